@@ -62,8 +62,7 @@ void cli_color_report(cli_json *json, const conic_coloring *coloring) {
   cli_json_object(json, "coloring");
   cli_json_text(json, "field", coloring->field);
   if (coloring->ramp) {
-    cli_json_number(json, "minimum", coloring->minimum);
-    cli_json_number(json, "maximum", coloring->maximum);
+    cli_json_figures(json, NULL, {"minimum", coloring->minimum}, {"maximum", coloring->maximum});
     cli_json_text(json, "ramp", coloring->ramp);
     cli_json_text(json, "scale", coloring->is_root ? "root" : "linear");
   }

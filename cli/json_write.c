@@ -226,13 +226,34 @@ void cli_json_numbers(cli_json *json, const char *key, const double *values, int
   cli_json_close(json);
 }
 
+void cli_json_put_figures(cli_json *json, const char *key, const cli_json_figure *members, size_t n) {
+  if (key)
+    cli_json_object(json, key);
+  for (size_t i = 0; i < n; i++)
+    cli_json_number(json, members[i].key, members[i].value);
+  if (key)
+    cli_json_close(json);
+}
+
+void cli_json_put_counts(cli_json *json, const char *key, const cli_json_counted *members, size_t n) {
+  if (key)
+    cli_json_object(json, key);
+  for (size_t i = 0; i < n; i++)
+    cli_json_count(json, members[i].key, members[i].value);
+  if (key)
+    cli_json_close(json);
+}
+
+void cli_json_put_texts(cli_json *json, const char *key, const cli_json_word *members, size_t n) {
+  if (key)
+    cli_json_object(json, key);
+  for (size_t i = 0; i < n; i++)
+    cli_json_text(json, members[i].key, members[i].value);
+  if (key)
+    cli_json_close(json);
+}
+
 void cli_json_skipped(cli_json *json, const conic_repairs *repairs) {
-  cli_json_object(json, "skipped");
-  cli_json_count(json, "nan", repairs->nan);
-  cli_json_count(json, "zero", repairs->zero);
-  cli_json_count(json, "duplicate", repairs->duplicate);
-  cli_json_count(json, "isolated", repairs->isolated);
-  cli_json_count(json, "failed", repairs->failed);
-  cli_json_count(json, "clip", repairs->clip);
-  cli_json_close(json);
+  cli_json_counts(json, "skipped", {"nan", repairs->nan}, {"zero", repairs->zero}, {"duplicate", repairs->duplicate},
+                  {"isolated", repairs->isolated}, {"failed", repairs->failed}, {"clip", repairs->clip});
 }

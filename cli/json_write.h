@@ -30,6 +30,31 @@ void cli_json_bool(cli_json *json, const char *key, int value);
 void cli_json_hash(cli_json *json, const char *key, uint64_t value);                 /* 16 hex digits */
 void cli_json_numbers(cli_json *json, const char *key, const double *values, int n); /* as an array */
 
+/* Members from a table of {"KEY", value}, …: as an object of that key, or in the open object where it is null. */
+#define cli_json_figures(json, key, ...) CLI_JSON_TABLE(cli_json_put_figures, cli_json_figure, json, key, __VA_ARGS__)
+#define cli_json_counts(json, key, ...) CLI_JSON_TABLE(cli_json_put_counts, cli_json_counted, json, key, __VA_ARGS__)
+#define cli_json_texts(json, key, ...) CLI_JSON_TABLE(cli_json_put_texts, cli_json_word, json, key, __VA_ARGS__)
+#define CLI_JSON_TABLE(put, type, json, key, ...)                                                                      \
+  put(json, key, (const type[]){__VA_ARGS__}, sizeof(type[]){__VA_ARGS__} / sizeof(type))
+
+typedef struct cli_json_figure {
+  const char *key;
+  double value;
+} cli_json_figure;
+
+typedef struct cli_json_counted {
+  const char *key;
+  uint64_t value;
+} cli_json_counted;
+
+typedef struct cli_json_word {
+  const char *key, *value;
+} cli_json_word;
+
+void cli_json_put_figures(cli_json *json, const char *key, const cli_json_figure *members, size_t n);
+void cli_json_put_counts(cli_json *json, const char *key, const cli_json_counted *members, size_t n);
+void cli_json_put_texts(cli_json *json, const char *key, const cli_json_word *members, size_t n);
+
 /* The object "skipped": what was left out or put right, and why. */
 void cli_json_skipped(cli_json *json, const conic_repairs *repairs);
 

@@ -220,28 +220,20 @@ static void report_conversion(cli_json *json, const void *cookie) {
   most = most < job->write.most_sh_degree ? most : job->write.most_sh_degree;
   cli_json_text(json, "kind_in", conic_gaussian_kind_name(job->kind_in));
   cli_json_text(json, "kind_out", conic_gaussian_kind_name(job->write.kind));
-  cli_json_count(json, "gaussians", scene->count);
-  cli_json_count(json, "sh_degree_in", (uint64_t)scene->sh_degree);
-  cli_json_count(json, "sh_degree_out", (uint64_t)(scene->sh_degree < most ? scene->sh_degree : most));
-  cli_json_text(json, "frame_in", job->frame_in);
-  cli_json_text(json, "frame_out", scene->frame);
+  cli_json_counts(json, NULL, {"gaussians", scene->count}, {"sh_degree_in", (uint64_t)scene->sh_degree},
+                  {"sh_degree_out", (uint64_t)(scene->sh_degree < most ? scene->sh_degree : most)});
+  cli_json_texts(json, NULL, {"frame_in", job->frame_in}, {"frame_out", scene->frame});
   cli_json_bool(json, "reordered", job->is_reordered);
   if (job->is_checked) {
     cli_json_bool(json, "lossless", job->is_lossless);
     cli_json_text(json, "lost", job->is_lossless ? NULL : job->losses);
-    cli_json_object(json, "differences");
-    cli_json_number(json, "position", job->differences.position);
-    cli_json_number(json, "scale", job->differences.scale);
-    cli_json_number(json, "rotation_deg", job->differences.rotation_deg);
-    cli_json_number(json, "opacity", job->differences.opacity);
-    cli_json_number(json, "color", job->differences.color);
-    cli_json_number(json, "harmonics", job->differences.harmonics);
-    cli_json_close(json);
+    cli_json_figures(json, "differences", {"position", job->differences.position}, {"scale", job->differences.scale},
+                     {"rotation_deg", job->differences.rotation_deg}, {"opacity", job->differences.opacity},
+                     {"color", job->differences.color}, {"harmonics", job->differences.harmonics});
     if (job->n_views > 0) {
       cli_json_object(json, "pictures");
       cli_json_count(json, "views", (uint64_t)job->n_views);
-      cli_json_number(json, "psnr", job->psnr);
-      cli_json_number(json, "greatest", job->greatest);
+      cli_json_figures(json, NULL, {"psnr", job->psnr}, {"greatest", job->greatest});
       cli_json_close(json);
     }
     cli_json_count(json, "bytes", bytes_written(job->base.output));

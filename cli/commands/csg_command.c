@@ -75,12 +75,8 @@ static void report_solid(cli_json *json, const void *cookie) {
   const conic_csg_report *report = &job->report;
   size_t n_in = job->models[0].points.count + job->models[1].points.count;
   cli_json_text(json, "operation", operation_names[job->operation]);
-  cli_json_count(json, "points_in", n_in);
-  cli_json_count(json, "points_out", job->result.count);
-  cli_json_count(json, "of_first", report->n_kept[0]);
-  cli_json_count(json, "of_second", report->n_kept[1]);
-  cli_json_count(json, "clipped", report->n_clipped);
-  cli_json_count(json, "unclipped", report->n_unclipped);
+  cli_json_counts(json, NULL, {"points_in", n_in}, {"points_out", job->result.count}, {"of_first", report->n_kept[0]},
+                  {"of_second", report->n_kept[1]}, {"clipped", report->n_clipped}, {"unclipped", report->n_unclipped});
   cli_build_report_cost(json, &job->base, "points_per_s", (double)n_in / job->base.stages[WORK].seconds);
 }
 

@@ -192,8 +192,7 @@ static void tell_cut(const void *cookie) {
 static void report_cut(cli_json *json, const void *cookie) {
   const cut_job *job = cookie;
   const conic_repairs none = {0};
-  cli_json_count(json, "points_in", job->n_in);
-  cli_json_count(json, "points_out", job->n_out);
+  cli_json_counts(json, NULL, {"points_in", job->n_in}, {"points_out", job->n_out});
   cli_build_report_cost(json, &job->base, "points_per_s", (double)job->n_in / job->base.stages[READ].seconds);
   cli_json_skipped(json, &none);
 }

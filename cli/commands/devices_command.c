@@ -18,10 +18,8 @@ static void report_device(cli_json *json, const conic_opencl_device *d) {
   char name[32];
   snprintf(name, sizeof name, "opencl:%d.%d", d->i_platform, d->i_device);
   cli_json_object(json, name);
-  cli_json_text(json, "name", d->name);
-  cli_json_text(json, "platform", d->platform);
-  cli_json_text(json, "version", d->version);
-  cli_json_text(json, "driver", d->driver);
+  cli_json_texts(json, NULL, {"name", d->name}, {"platform", d->platform}, {"version", d->version},
+                 {"driver", d->driver});
   cli_json_bool(json, "is_cpu", d->is_cpu);
   cli_json_bool(json, "has_double", d->has_double);
   cli_json_bool(json, "rounds_correctly", d->rounds_correctly);

@@ -12,11 +12,8 @@ static void write_planes(cli_json *json, const conic_difference *difference) {
   for (int i = 0; i < CONIC_N_PLANES; i++) {
     if (!difference->planes[i].compared)
       continue;
-    cli_json_object(json, conic_plane_describe((conic_plane)i)->name);
-    cli_json_number(json, "max_abs", difference->planes[i].max_abs);
-    cli_json_number(json, "rmse", difference->planes[i].rmse);
-    cli_json_number(json, "p999", difference->planes[i].p999);
-    cli_json_close(json);
+    cli_json_figures(json, conic_plane_describe((conic_plane)i)->name, {"max_abs", difference->planes[i].max_abs},
+                     {"rmse", difference->planes[i].rmse}, {"p999", difference->planes[i].p999});
   }
   cli_json_close(json);
 }

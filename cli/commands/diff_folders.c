@@ -60,9 +60,7 @@ static void report_view(cli_json *json, const cli_diff_view *view) {
   char name[256];
   snprintf(name, sizeof name, "%.*s", view->files[0]->n_stem, view->files[0]->name);
   cli_json_object(json, NULL);
-  cli_json_text(json, "name", name);
-  cli_json_text(json, "a", view->files[0]->path);
-  cli_json_text(json, "b", view->files[1]->path);
+  cli_json_texts(json, NULL, {"name", name}, {"a", view->files[0]->path}, {"b", view->files[1]->path});
   cli_json_bool(json, "pass", !view->is_past);
   cli_diff_report(json, &view->difference);
   cli_json_close(json);

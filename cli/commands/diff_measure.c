@@ -36,13 +36,11 @@ static void report_count(cli_json *json, const char *key, int is_known, size_t c
 void cli_diff_report(cli_json *json, const conic_difference *difference) {
   int has_values = cli_diff_has_values(difference), has_color = difference->has_color;
   cli_json_bool(json, "identical", difference->identical);
-  cli_json_number(json, "max_abs", has_values ? difference->max_abs : NAN);
-  cli_json_number(json, "rmse", has_values ? difference->rmse : NAN);
-  cli_json_number(json, "p999", has_values ? difference->p999 : NAN);
-  cli_json_number(json, "psnr", has_color ? difference->psnr : NAN);
-  cli_json_number(json, "ssim", has_color ? difference->ssim : NAN);
-  cli_json_number(json, "ssim_padded", has_color ? difference->ssim_padded : NAN);
-  cli_json_number(json, "flip", has_color ? difference->flip : NAN);
+  cli_json_figures(json, NULL, {"max_abs", has_values ? difference->max_abs : NAN},
+                   {"rmse", has_values ? difference->rmse : NAN}, {"p999", has_values ? difference->p999 : NAN},
+                   {"psnr", has_color ? difference->psnr : NAN}, {"ssim", has_color ? difference->ssim : NAN},
+                   {"ssim_padded", has_color ? difference->ssim_padded : NAN},
+                   {"flip", has_color ? difference->flip : NAN});
   report_count(json, "over_code", has_color, difference->over_code);
   report_count(json, "differing_pixels", difference->same_size, difference->differing_pixels);
   report_count(json, "largest_hole", difference->same_size, difference->largest_hole);

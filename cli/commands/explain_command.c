@@ -70,10 +70,8 @@ static void write_projection(cli_json *json, const explain_job *job, const conic
     cli_json_numbers(json, "variance", p->variance_px, 3);
     cli_json_numbers(json, "conic", p->conic, 3);
   }
-  cli_json_number(json, "amplitude", p->amplitude);
-  cli_json_number(json, "nearest_z", p->nearest_z);
-  cli_json_number(json, "farthest_z", p->farthest_z);
-  cli_json_number(json, "nearness", p->nearness);
+  cli_json_figures(json, NULL, {"amplitude", p->amplitude}, {"nearest_z", p->nearest_z}, {"farthest_z", p->farthest_z},
+                   {"nearness", p->nearness});
   write_vector(json, "color", p->color);
   write_vector(json, "normal", p->normal);
 }
@@ -100,11 +98,9 @@ static conic_status write_contribution(cli_json *json, const explain_job *job, c
     cli_json_number(json, "weight", (double)c->weight);
     if (c->verdict == CONIC_CONTRIBUTION_VISIBLE)
       cli_json_number(json, "share", (double)c->weight / visible_weight);
-    cli_json_number(json, "depth", (double)c->depth);
-    cli_json_number(json, "q", (double)c->q);
-    cli_json_number(json, "inverse_depth", (double)c->inverse_depth);
-    cli_json_number(json, "plane_inverse_depth", (double)c->plane_inverse_depth);
-    cli_json_number(json, "hides", (double)c->hides);
+    cli_json_figures(json, NULL, {"depth", (double)c->depth}, {"q", (double)c->q},
+                     {"inverse_depth", (double)c->inverse_depth},
+                     {"plane_inverse_depth", (double)c->plane_inverse_depth}, {"hides", (double)c->hides});
   }
   write_projection(json, job, &projection);
   cli_json_close(json);
@@ -118,18 +114,17 @@ static void write_blended(cli_json *json, const explain_job *job, const at_pixel
     if (at->list[i].verdict == CONIC_CONTRIBUTION_VISIBLE) {
       cli_json_object(json, NULL);
       write_splat_name(json, job, at->list[i].splat);
-      cli_json_number(json, "weight", (double)at->list[i].weight);
-      cli_json_number(json, "share", (double)at->list[i].weight / at->visible_weight);
-      cli_json_number(json, "depth", (double)at->list[i].depth);
+      cli_json_figures(json, NULL, {"weight", (double)at->list[i].weight},
+                       {"share", (double)at->list[i].weight / at->visible_weight},
+                       {"depth", (double)at->list[i].depth});
       cli_json_close(json);
     }
   for (size_t i = 0; i < at->n_triangles; i++)
     if (at->triangles[i].verdict == CONIC_CONTRIBUTION_VISIBLE) {
       cli_json_object(json, NULL);
       write_triangle_name(json, job, at->triangles[i].triangle);
-      cli_json_number(json, "weight", 1.0);
-      cli_json_number(json, "share", 1.0 / at->visible_weight);
-      cli_json_number(json, "depth", (double)at->triangles[i].depth);
+      cli_json_figures(json, NULL, {"weight", 1.0}, {"share", 1.0 / at->visible_weight},
+                       {"depth", (double)at->triangles[i].depth});
       cli_json_close(json);
     }
   cli_json_close(json);
@@ -144,9 +139,8 @@ static void write_triangles(cli_json *json, const explain_job *job, const conic_
     cli_json_number(json, "weight", 1.0);
     if (list[i].verdict == CONIC_CONTRIBUTION_VISIBLE)
       cli_json_number(json, "share", 1.0 / visible_weight);
-    cli_json_number(json, "depth", (double)list[i].depth);
-    cli_json_number(json, "inverse_depth", (double)list[i].inverse_depth);
-    cli_json_number(json, "hides", (double)list[i].hides);
+    cli_json_figures(json, NULL, {"depth", (double)list[i].depth}, {"inverse_depth", (double)list[i].inverse_depth},
+                     {"hides", (double)list[i].hides});
     write_triangle_name(json, job, list[i].triangle);
     write_vector(json, "color", list[i].color);
     write_vector(json, "normal", list[i].normal);

@@ -62,16 +62,12 @@ static void write_entry(cli_json *json, const conic_gaussian_entry *e) {
   cli_json_object(json, NULL);
   cli_json_count(json, "gaussian", e->index);
   cli_json_text(json, "verdict", conic_gaussian_part_name(e->part));
-  cli_json_number(json, "key", e->key);
-  cli_json_number(json, "depth", e->z);
-  cli_json_number(json, "q", e->q);
+  cli_json_figures(json, NULL, {"key", e->key}, {"depth", e->z}, {"q", e->q});
   write_list(json, "q_range", q, 2);
   cli_json_number(json, "alpha", e->alpha);
   write_list(json, "alpha_range", alpha, 2);
   if (e->part == CONIC_PART_COMPOSITED) {
-    cli_json_number(json, "before", e->before);
-    cli_json_number(json, "weight", e->weight);
-    cli_json_number(json, "after", e->after);
+    cli_json_figures(json, NULL, {"before", e->before}, {"weight", e->weight}, {"after", e->after});
   }
   write_list(json, "color", e->color, 3);
   cli_json_number(json, "opacity", e->opacity);
@@ -105,8 +101,7 @@ static int write_explanation(cli_session *session, const cli_render_job *scene, 
   if (!json)
     return exit_code;
   cli_json_text(json, "profile", conic_gaussian_profile_name(scene->shot.gaussians.profile));
-  cli_json_count(json, "width", (uint64_t)image->width);
-  cli_json_count(json, "height", (uint64_t)image->height);
+  cli_json_counts(json, NULL, {"width", (uint64_t)image->width}, {"height", (uint64_t)image->height});
   write_list(json, "pixel", pixel, 2);
   cli_explain_planes(json, image, x, y);
   write_listing(json, listing);

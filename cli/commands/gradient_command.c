@@ -29,10 +29,7 @@ static void write_camera_gradient(cli_json *json, const conic_gaussian_gradient 
     cli_json_close(json);
   }
   cli_json_close(json);
-  cli_json_number(json, "fx", g->fx);
-  cli_json_number(json, "fy", g->fy);
-  cli_json_number(json, "cx", g->cx);
-  cli_json_number(json, "cy", g->cy);
+  cli_json_figures(json, NULL, {"fx", g->fx}, {"fy", g->fy}, {"cx", g->cx}, {"cy", g->cy});
   cli_json_close(json);
 }
 
@@ -52,14 +49,11 @@ static void write_greatest(cli_json *json, const conic_gaussian_gradient *g) {
   const double *const scales[] = {g->scale[0], g->scale[1], g->scale[2]}, *const places[] = {g->place[0], g->place[1]};
   const double *const turns[] = {g->rotation[0], g->rotation[1], g->rotation[2], g->rotation[3]};
   const size_t n_sh = 3 * (size_t)(g->sh_degree + 1) * (size_t)(g->sh_degree + 1);
-  cli_json_object(json, "greatest");
-  cli_json_number(json, "mean", greatest_in_columns(means, 3, g->count));
-  cli_json_number(json, "scale", greatest_in_columns(scales, 3, g->count));
-  cli_json_number(json, "rotation", greatest_in_columns(turns, 4, g->count));
-  cli_json_number(json, "opacity", greatest_in_columns(&opacity, 1, g->count));
-  cli_json_number(json, "sh", greatest_in_columns(&sh, 1, g->count * n_sh));
-  cli_json_number(json, "place", greatest_in_columns(places, 2, g->count));
-  cli_json_close(json);
+  cli_json_figures(
+      json, "greatest", {"mean", greatest_in_columns(means, 3, g->count)},
+      {"scale", greatest_in_columns(scales, 3, g->count)}, {"rotation", greatest_in_columns(turns, 4, g->count)},
+      {"opacity", greatest_in_columns(&opacity, 1, g->count)}, {"sh", greatest_in_columns(&sh, 1, g->count * n_sh)},
+      {"place", greatest_in_columns(places, 2, g->count)});
 }
 
 static void report_gradient(cli_json *json, const void *cookie) {
@@ -67,10 +61,8 @@ static void report_gradient(cli_json *json, const void *cookie) {
   const conic_gaussian_gradient *g = &job->gradient;
   cli_json_text(json, "profile", conic_gaussian_profile_name(job->scene.shot.gaussians.profile));
   cli_json_text(json, "parameters", g->is_raw ? "raw" : "activated");
-  cli_json_count(json, "width", (uint64_t)job->weights.width);
-  cli_json_count(json, "height", (uint64_t)job->weights.height);
-  cli_json_count(json, "gaussians", g->count);
-  cli_json_count(json, "shown", g->n_shown);
+  cli_json_counts(json, NULL, {"width", (uint64_t)job->weights.width}, {"height", (uint64_t)job->weights.height},
+                  {"gaussians", g->count}, {"shown", g->n_shown});
   cli_json_number(json, "loss", g->loss);
   write_camera_gradient(json, g);
   write_greatest(json, g);
@@ -81,9 +73,7 @@ static void report_gradient(cli_json *json, const void *cookie) {
       cli_json_count(json, conic_gradient_doubt_name(k), g->doubtful[k]);
     cli_json_close(json);
   }
-  cli_json_object(json, "ms");
-  cli_json_number(json, "gradient", job->ms);
-  cli_json_close(json);
+  cli_json_figures(json, "ms", {"gradient", job->ms});
   cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
 }
 

@@ -84,33 +84,19 @@ static void write_counts(cli_json *json, const hybrid_job *job) {
   const conic_hybrid_report *r = &job->report;
   cli_json_count(json, "triangles_in", r->n_faces);
   if (r->n_points) {
-    cli_json_count(json, "points_in", r->n_points);
-    cli_json_count(json, "splats_kept", r->n_kept);
+    cli_json_counts(json, NULL, {"points_in", r->n_points}, {"splats_kept", r->n_kept});
   }
-  cli_json_count(json, "triangles", job->info.n_triangles);
-  cli_json_count(json, "surfels", job->info.n_surfels);
-  cli_json_count(json, "clusters", job->info.n_clusters);
-  cli_json_count(json, "surfel_clusters", job->info.n_surfel_clusters);
-  cli_json_count(json, "clusters_phase1", r->n_first);
-  cli_json_count(json, "levels", job->info.n_levels);
-  cli_json_count(json, "node_levels", job->info.n_node_levels);
-  cli_json_count(json, "pieces", r->n_pieces);
-  cli_json_count(json, "bytes", job->info.n_bytes);
+  cli_json_counts(json, NULL, {"triangles", job->info.n_triangles}, {"surfels", job->info.n_surfels},
+                  {"clusters", job->info.n_clusters}, {"surfel_clusters", job->info.n_surfel_clusters},
+                  {"clusters_phase1", r->n_first}, {"levels", job->info.n_levels},
+                  {"node_levels", job->info.n_node_levels}, {"pieces", r->n_pieces}, {"bytes", job->info.n_bytes});
 }
 
 /* Writes what keeps the mesh from being a closed surface. */
 static void write_oddities(cli_json *json, const conic_hybrid_report *r) {
-  cli_json_object(json, "skipped");
-  cli_json_count(json, "nan", r->nan);
-  cli_json_count(json, "zero", r->zero);
-  cli_json_close(json);
-  cli_json_object(json, "oddities");
-  cli_json_count(json, "welded", r->welded);
-  cli_json_count(json, "open_edges", r->open);
-  cli_json_count(json, "crowded_edges", r->crowded);
-  cli_json_count(json, "twisted_edges", r->twisted);
-  cli_json_count(json, "turned", r->turned);
-  cli_json_close(json);
+  cli_json_counts(json, "skipped", {"nan", r->nan}, {"zero", r->zero});
+  cli_json_counts(json, "oddities", {"welded", r->welded}, {"open_edges", r->open}, {"crowded_edges", r->crowded},
+                  {"twisted_edges", r->twisted}, {"turned", r->turned});
 }
 
 static void report_hybrid(cli_json *json, const void *cookie) {

@@ -200,8 +200,7 @@ static void report_scene(cli_json *json, const void *cookie) {
   const make_job *job = cookie;
   const conic_repairs none = {0}; /* what is made is sound, but the keys are those of every command that builds */
   cli_json_text(json, "scene", job->is_gaussians ? gaussians_name : conic_scene_name(job->scene.type));
-  cli_json_count(json, "points_in", job->scene.count);
-  cli_json_count(json, "points_out", job->scene.count);
+  cli_json_counts(json, NULL, {"points_in", job->scene.count}, {"points_out", job->scene.count});
   cli_build_report_cost(json, &job->base, "points_per_s", (double)job->scene.count / job->base.stages[WORK].seconds);
   cli_json_count(json, "threads", (uint64_t)conic_context_threads(job->base.session->context));
   cli_json_skipped(json, &none);

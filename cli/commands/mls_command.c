@@ -269,12 +269,10 @@ static int write_points(mls_job *job) {
 /* --- statistics --- */
 
 static void write_surface(cli_json *json, const mls_job *job) {
-  cli_json_text(json, "action", action_names[job->action]);
-  cli_json_text(json, "type", type_names[job->type]);
-  cli_json_text(json, "plane", job->type == CONIC_SURFACE_MLS ? plane_names[job->plane] : NULL);
-  cli_json_text(json, "weight", weight_names[job->weight]);
-  cli_json_number(json, "h", job->report.h);
-  cli_json_number(json, "neglect", job->options.neglect);
+  cli_json_texts(json, NULL, {"action", action_names[job->action]}, {"type", type_names[job->type]},
+                 {"plane", job->type == CONIC_SURFACE_MLS ? plane_names[job->plane] : NULL},
+                 {"weight", weight_names[job->weight]});
+  cli_json_figures(json, NULL, {"h", job->report.h}, {"neglect", job->options.neglect});
   if (job->type == CONIC_SURFACE_MLS)
     cli_json_count(json, "degree", (uint64_t)job->options.degree);
 }
@@ -286,28 +284,22 @@ static void write_projected(cli_json *json, const conic_surface_report *report) 
   for (int i = 0; i < CONIC_N_SURFACE_OUTCOMES; i++)
     cli_json_count(json, keys[i], report->outcomes[i]);
   cli_json_close(json);
-  cli_json_object(json, "moved");
-  cli_json_number(json, "rms", report->moved_rms);
-  cli_json_number(json, "max", report->moved_max);
-  cli_json_close(json);
+  cli_json_figures(json, "moved", {"rms", report->moved_rms}, {"max", report->moved_max});
   cli_json_number(json, "mean_neighbours", report->mean_neighbours);
   cli_json_count(json, "merged", report->n_merged);
 }
 
 static void write_distance(cli_json *json, const char *key, const conic_surface_distance *distance) {
   cli_json_object(json, key);
-  cli_json_number(json, "max", distance->max);
-  cli_json_number(json, "rms", distance->rms);
-  cli_json_count(json, "measured", distance->n_measured);
-  cli_json_count(json, "failed", distance->n_failed);
+  cli_json_figures(json, NULL, {"max", distance->max}, {"rms", distance->rms});
+  cli_json_counts(json, NULL, {"measured", distance->n_measured}, {"failed", distance->n_failed});
   cli_json_close(json);
 }
 
 static void report_points(cli_json *json, const void *cookie) {
   const mls_job *job = cookie;
   const conic_surface_report *report = &job->report;
-  cli_json_count(json, "points_in", job->n_in);
-  cli_json_count(json, "points_out", job->n_out);
+  cli_json_counts(json, NULL, {"points_in", job->n_in}, {"points_out", job->n_out});
   write_surface(json, job);
   if (job->action == MLS_PROJECT)
     write_projected(json, report);

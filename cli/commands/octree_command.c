@@ -77,11 +77,9 @@ static int make_octree(void *cookie) {
 
 static void report_octree(cli_json *json, const void *cookie) {
   const octree_job *job = cookie;
-  cli_json_count(json, "points_in", job->n_in);
-  cli_json_count(json, "points_out", job->info.n_leaves);
-  cli_json_count(json, "inner_nodes", job->info.n_nodes);
-  cli_json_count(json, "levels", (uint64_t)job->info.n_levels);
-  cli_json_count(json, "bytes", job->info.n_bytes);
+  cli_json_counts(json, NULL, {"points_in", job->n_in}, {"points_out", job->info.n_leaves},
+                  {"inner_nodes", job->info.n_nodes}, {"levels", (uint64_t)job->info.n_levels},
+                  {"bytes", job->info.n_bytes});
   cli_json_number(json, "bytes_per_point", (double)job->info.n_bytes / (double)job->n_in);
   cli_color_report(json, &job->coloring.done);
   cli_build_report_cost(json, &job->base, "points_per_s", (double)job->n_in / job->base.stages[WORK].seconds);

@@ -118,9 +118,8 @@ static int write_splats(prepare_job *job) {
 
 static void report_prepared(cli_json *json, const void *cookie) {
   const prepare_job *job = cookie;
-  cli_json_count(json, "points_in", job->n_in);
-  cli_json_count(json, "points_out", job->model.points.count);
-  cli_json_count(json, "clipped", job->model.points.n_clips);
+  cli_json_counts(json, NULL, {"points_in", job->n_in}, {"points_out", job->model.points.count},
+                  {"clipped", job->model.points.n_clips});
   if (job->bake)
     cli_json_count(json, "baked_directions", (uint64_t)job->n_directions);
   cli_json_count(json, "dots", conic_splats_count_dots(&job->model.points));

@@ -91,10 +91,8 @@ static void report_planes(cli_json *json, const verify_job *job) {
 static void report_pixels(cli_json *json, const verify_job *job) {
   const conic_oracle_verdict *verdict = &job->verdict;
   const conic_reference *reference = &job->reference;
-  cli_json_count(json, "judged_pixels", reference->n_pixels);
-  cli_json_count(json, "compared_pixels", verdict->compared_pixels);
-  cli_json_count(json, "unstable_pixels", verdict->unstable_pixels);
-  cli_json_count(json, "covered_pixels", verdict->covered_pixels);
+  cli_json_counts(json, NULL, {"judged_pixels", reference->n_pixels}, {"compared_pixels", verdict->compared_pixels},
+                  {"unstable_pixels", verdict->unstable_pixels}, {"covered_pixels", verdict->covered_pixels});
   if (job->scene.shot.view.samples > 1) {
     cli_json_count(json, "unstable_samples", reference->unstable_samples);
     cli_json_count(json, "covered_samples", reference->covered_samples);
@@ -127,11 +125,8 @@ static void report_samples(cli_json *json, const verify_job *job) {
 
 static void report_weights(cli_json *json, const conic_weight_error *error) {
   cli_json_object(json, "weight_error");
-  cli_json_number(json, "max_abs", error->max_abs);
-  cli_json_number(json, "p999", error->p999);
-  cli_json_number(json, "max_of_peak", error->max_of_peak);
-  cli_json_number(json, "p999_of_peak", error->p999_of_peak);
-  cli_json_number(json, "quadrature", error->quadrature);
+  cli_json_figures(json, NULL, {"max_abs", error->max_abs}, {"p999", error->p999}, {"max_of_peak", error->max_of_peak},
+                   {"p999_of_peak", error->p999_of_peak}, {"quadrature", error->quadrature});
   cli_json_count(json, "weights", error->n_weights);
   cli_json_close(json);
 }
@@ -147,10 +142,7 @@ static void write_statistics(cli_json *json, const void *cookie) {
   report_pixels(json, job);
   if (job->question == CONIC_ORACLE_EXACT)
     report_weights(json, &job->reference.weight_error);
-  cli_json_object(json, "ms");
-  cli_json_number(json, "render", job->render_ms);
-  cli_json_number(json, "oracle", job->oracle_ms);
-  cli_json_close(json);
+  cli_json_figures(json, "ms", {"render", job->render_ms}, {"oracle", job->oracle_ms});
   cli_json_bool(json, "pass", job->verdict.pass);
 }
 

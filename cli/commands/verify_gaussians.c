@@ -42,8 +42,7 @@ static void write_by_doubt(cli_json *json, const char *key, const size_t *counts
 static void write_verdict(cli_json *json, const void *cookie) {
   const gaussian_report *r = cookie;
   const conic_gaussian_verdict *v = &r->verdict;
-  cli_json_text(json, "against", "profile");
-  cli_json_text(json, "profile", profile_of(r->scene));
+  cli_json_texts(json, NULL, {"against", "profile"}, {"profile", profile_of(r->scene)});
   if (r->scene->accumulating.is_sample_given)
     cli_json_count(json, "sample", r->scene->accumulating.i_sample);
   if (r->judging.samples > 1)
@@ -51,14 +50,11 @@ static void write_verdict(cli_json *json, const void *cookie) {
   cli_json_object(json, "planes");
   for (int i = 0; i < CONIC_N_PLANES; i++)
     if (v->planes[i].is_compared) {
-      cli_json_object(json, conic_plane_describe((conic_plane)i)->name);
-      cli_json_number(json, "max_abs", v->planes[i].max_abs);
-      cli_json_number(json, "widest", v->planes[i].bound);
-      cli_json_close(json);
+      cli_json_figures(json, conic_plane_describe((conic_plane)i)->name, {"max_abs", v->planes[i].max_abs},
+                       {"widest", v->planes[i].bound});
     }
   cli_json_close(json);
-  cli_json_count(json, "judged_pixels", v->judged_pixels);
-  cli_json_count(json, "covered_pixels", v->covered_pixels);
+  cli_json_counts(json, NULL, {"judged_pixels", v->judged_pixels}, {"covered_pixels", v->covered_pixels});
   cli_json_object(json, "classes");
   for (int k = 0; k < CONIC_N_GAUSSIAN_CLASSES; k++)
     cli_json_count(json, conic_gaussian_class_name((conic_gaussian_class)k), v->pixels[k]);
@@ -70,10 +66,7 @@ static void write_verdict(cli_json *json, const void *cookie) {
   cli_json_count(json, "wrong_pixels", v->pixels[CONIC_PIXEL_WRONG]);
   if (v->n_worst)
     cli_report_fault(json, "worst", &v->worst[0]);
-  cli_json_object(json, "ms");
-  cli_json_number(json, "render", r->render_ms);
-  cli_json_number(json, "oracle", r->oracle_ms);
-  cli_json_close(json);
+  cli_json_figures(json, "ms", {"render", r->render_ms}, {"oracle", r->oracle_ms});
   cli_json_bool(json, "pass", v->pass);
 }
 

@@ -44,13 +44,10 @@ conic_status cli_reference_draw(cli_session *session, const cli_render_job *scen
 }
 
 void cli_fault_members(cli_json *json, const conic_oracle_fault *fault) {
-  cli_json_count(json, "x", (uint64_t)fault->x);
-  cli_json_count(json, "y", (uint64_t)fault->y);
+  cli_json_counts(json, NULL, {"x", (uint64_t)fault->x}, {"y", (uint64_t)fault->y});
   cli_json_text(json, "plane", conic_plane_describe((conic_plane)fault->plane)->name);
   cli_json_count(json, "channel", (uint64_t)fault->channel);
-  cli_json_number(json, "found", fault->found);
-  cli_json_number(json, "low", fault->low);
-  cli_json_number(json, "high", fault->high);
+  cli_json_figures(json, NULL, {"found", fault->found}, {"low", fault->low}, {"high", fault->high});
 }
 
 void cli_report_fault(cli_json *json, const char *key, const conic_oracle_fault *fault) {

@@ -27,14 +27,10 @@ static void write_option(cli_json *json, const char *group, const cli_help_entry
   cli_json_object(json, NULL);
   write_name(json, "name", option);
   write_name(json, "alias", entry->alias);
-  cli_json_text(json, "group", group);
-  cli_json_text(json, "type", types[option->type]);
-  cli_json_text(json, "argument", option->argument);
-  cli_json_text(json, "text", entry->text);
-  cli_json_text(json, "default", entry->fallback[0] ? entry->fallback : NULL);
+  cli_json_texts(json, NULL, {"group", group}, {"type", types[option->type]}, {"argument", option->argument},
+                 {"text", entry->text}, {"default", entry->fallback[0] ? entry->fallback : NULL});
   if (is_limited) {
-    cli_json_number(json, "minimum", option->minimum);
-    cli_json_number(json, "maximum", option->maximum);
+    cli_json_figures(json, NULL, {"minimum", option->minimum}, {"maximum", option->maximum});
   }
   if (option->choices) {
     cli_json_array(json, "words");
@@ -56,10 +52,8 @@ void cli_help_json(cli_session *session, const cli_option_table *table) {
   cli_help_entry entry;
   const char *group = NULL;
   cli_json_object(json, NULL);
-  cli_json_text(json, "name", command->name);
-  cli_json_text(json, "summary", command->summary);
-  cli_json_text(json, "usage", command->usage);
-  cli_json_text(json, "description", command->description);
+  cli_json_texts(json, NULL, {"name", command->name}, {"summary", command->summary}, {"usage", command->usage},
+                 {"description", command->description});
   cli_json_array(json, "options");
   for (int i = 0; cli_help_next(table, &i, &entry);) {
     group = entry.group ? entry.group : group;

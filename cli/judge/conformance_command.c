@@ -158,9 +158,8 @@ static void describe_floats(cli_json *json, const conformance_job *job) {
   const conic_float_model model = model_of_job(job);
   cli_json_object(json, "floats");
   cli_json_text(json, "name", float_names[job->floats]);
-  cli_json_number(json, "exp_relative", model.exp_relative);
-  cli_json_number(json, "exp_by_argument", model.exp_by_argument);
-  cli_json_number(json, "setup_roundoff", model.setup_roundoff);
+  cli_json_figures(json, NULL, {"exp_relative", model.exp_relative}, {"exp_by_argument", model.exp_by_argument},
+                   {"setup_roundoff", model.setup_roundoff});
   cli_json_count(json, "form_roundings", (uint64_t)model.n_form_roundings);
   cli_json_close(json);
 }
@@ -193,8 +192,7 @@ static void describe_scene(cli_json *json, const conformance_job *job, int i_sce
   if (scene->formats & SUITE_GLB)
     describe_path(json, "glb", "scenes", scene->name, ".glb");
   cli_json_close(json);
-  cli_json_count(json, "width", (uint64_t)scene->width);
-  cli_json_count(json, "height", (uint64_t)scene->height);
+  cli_json_counts(json, NULL, {"width", (uint64_t)scene->width}, {"height", (uint64_t)scene->height});
   cli_json_object(json, "camera");
   describe_path(json, "conic", "cameras", scene->name, ".json");
   describe_path(json, "colmap", "cameras", scene->name, "");
@@ -375,9 +373,8 @@ static void tell_suite(const void *cookie) {
 static void report_suite(cli_json *json, const void *cookie) {
   const conformance_job *job = cookie;
   cli_json_text(json, "floats", float_names[job->floats]);
-  cli_json_count(json, "cases", (uint64_t)job->n_cases);
-  cli_json_count(json, "files", (uint64_t)job->files->n + 1);
-  cli_json_count(json, "bytes", count_bytes(job));
+  cli_json_counts(json, NULL, {"cases", (uint64_t)job->n_cases}, {"files", (uint64_t)job->files->n + 1},
+                  {"bytes", count_bytes(job)});
   describe_levels(json, job);
   cli_build_report_cost(json, &job->base, "cases_per_s", (double)job->n_cases / job->base.total_seconds);
 }

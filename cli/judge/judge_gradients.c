@@ -32,10 +32,7 @@ static void write_gradient_worst(cli_json *json, const conic_gradient_verdict *v
     cli_json_count(json, "gaussian", f->gaussian);
     cli_json_text(json, "kind", conic_gradient_kind_name((conic_gradient_kind)f->kind));
     cli_json_count(json, "number", (uint64_t)f->number);
-    cli_json_number(json, "found", f->found);
-    cli_json_number(json, "value", f->value);
-    cli_json_number(json, "low", f->low);
-    cli_json_number(json, "high", f->high);
+    cli_json_figures(json, NULL, {"found", f->found}, {"value", f->value}, {"low", f->low}, {"high", f->high});
     cli_json_close(json);
   }
   cli_json_close(json);
@@ -57,16 +54,13 @@ static void write_gradient_verdict(cli_json *json, const void *cookie) {
       continue;
     cli_json_object(json, conic_gradient_kind_name((conic_gradient_kind)k));
     cli_json_count(json, "wrong", v->wrong[k]);
-    cli_json_number(json, "greatest", v->greatest[k]);
-    cli_json_number(json, "max_abs", v->max_abs[k]);
-    cli_json_number(json, "share_of_bound", v->share_of_bound[k]);
+    cli_json_figures(json, NULL, {"greatest", v->greatest[k]}, {"max_abs", v->max_abs[k]},
+                     {"share_of_bound", v->share_of_bound[k]});
     cli_json_close(json);
   }
   cli_json_close(json);
   write_gradient_worst(json, v);
-  cli_json_object(json, "ms");
-  cli_json_number(json, "judge", job->ms);
-  cli_json_close(json);
+  cli_json_figures(json, "ms", {"judge", job->ms});
 }
 
 static void print_gradient_verdict(const gradients_job *job) {

@@ -120,17 +120,16 @@ void cli_judge_print(const cli_judge_job *job) {
 
 static void write_picture(cli_json *json, const cli_judge_job *job) {
   cli_json_object(json, "picture");
-  cli_json_count(json, "width", (uint64_t)job->camera.width);
-  cli_json_count(json, "height", (uint64_t)job->camera.height);
-  cli_json_count(json, "bits", job->picture.most_code == 255 ? 8 : job->picture.most_code ? 16 : 32);
+  cli_json_counts(json, NULL, {"width", (uint64_t)job->camera.width}, {"height", (uint64_t)job->camera.height},
+                  {"bits", job->picture.most_code == 255 ? 8
+                           : job->picture.most_code      ? 16
+                                                         : 32});
   cli_json_bool(json, "has_alpha", !job->picture.image.lacks_alpha);
   cli_json_close(json);
   cli_json_object(json, "planes");
   for (int i = 0; i < CONIC_N_PLANES; i++)
     if (job->found.planes[i].is_compared) {
-      cli_json_object(json, conic_plane_describe((conic_plane)i)->name);
-      cli_json_number(json, "max_abs", job->found.planes[i].max_abs);
-      cli_json_close(json);
+      cli_json_figures(json, conic_plane_describe((conic_plane)i)->name, {"max_abs", job->found.planes[i].max_abs});
     }
   cli_json_close(json);
 }
@@ -186,10 +185,8 @@ void cli_judge_members(cli_json *json, const void *cookie) {
   for (int k = 0; k < CONIC_N_PIXEL_CLASSES; k++)
     cli_json_count(json, cli_class_words[k], found->pixels[k]);
   cli_json_close(json);
-  cli_json_count(json, "max_wrong", job->max_wrong);
-  cli_json_count(json, "judged_pixels", found->judged);
-  cli_json_count(json, "covered_pixels", found->covered);
-  cli_json_count(json, "doubtful_pixels", found->doubtful);
+  cli_json_counts(json, NULL, {"max_wrong", job->max_wrong}, {"judged_pixels", found->judged},
+                  {"covered_pixels", found->covered}, {"doubtful_pixels", found->doubtful});
   if (cli_is_composited(&job->scene))
     cli_json_count(json, "vague_pixels", found->vague);
   cli_json_object(json, "explained_by");

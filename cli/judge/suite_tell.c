@@ -120,21 +120,17 @@ static void report_case(cli_json *json, const suite_verdict *v) {
   cli_json_object(json, NULL);
   cli_json_text(json, "name", v->entry->name);
   cli_json_count(json, "level", (uint64_t)v->entry->level);
-  cli_json_text(json, "scene", v->entry->scene);
-  cli_json_text(json, "profile", v->entry->profile);
-  cli_json_text(json, "outcome", cli_suite_outcome_names[v->outcome]);
+  cli_json_texts(json, NULL, {"scene", v->entry->scene}, {"profile", v->entry->profile},
+                 {"outcome", cli_suite_outcome_names[v->outcome]});
   cli_json_object(json, "pixels");
   for (int k = 0; k < CONIC_N_PIXEL_CLASSES; k++)
     cli_json_count(json, cli_class_words[k], v->pixels[k]);
   cli_json_close(json);
   if (v->pixels[CONIC_PIXEL_WRONG]) {
     cli_json_object(json, "worst");
-    cli_json_count(json, "x", (uint64_t)v->x);
-    cli_json_count(json, "y", (uint64_t)v->y);
+    cli_json_counts(json, NULL, {"x", (uint64_t)v->x}, {"y", (uint64_t)v->y});
     cli_json_text(json, "channel", cli_suite_channel_names[v->channel]);
-    cli_json_number(json, "found", v->found);
-    cli_json_number(json, "low", v->low);
-    cli_json_number(json, "high", v->high);
+    cli_json_figures(json, NULL, {"found", v->found}, {"low", v->low}, {"high", v->high});
     cli_json_close(json);
   }
   cli_json_text(json, "message", v->message[0] ? v->message : NULL);
@@ -143,9 +139,8 @@ static void report_case(cli_json *json, const suite_verdict *v) {
 
 void cli_suite_members(cli_json *json, const void *cookie) {
   const suite_run *run = cookie;
-  cli_json_text(json, "verdict", cli_suite_is_right(run) ? "right" : "wrong");
-  cli_json_text(json, "suite", run->judging.suite);
-  cli_json_text(json, "floats", run->manifest.floats);
+  cli_json_texts(json, NULL, {"verdict", cli_suite_is_right(run) ? "right" : "wrong"}, {"suite", run->judging.suite},
+                 {"floats", run->manifest.floats});
   cli_json_object(json, "total");
   report_outcomes(json, run, 0);
   cli_json_close(json);

@@ -17,15 +17,11 @@ static void report_layers(cli_json *json, const void *cookie) {
   const cli_layer_job *job = cookie;
   const conic_layers_statistics *s = &job->statistics;
   const conic_repairs repairs = {.nan = (size_t)s->n_nan, .zero = (size_t)s->n_zero};
-  cli_json_count(json, "points_in", s->n_in);
-  cli_json_count(json, "points_out", s->n_samples);
+  cli_json_counts(json, NULL, {"points_in", s->n_in}, {"points_out", s->n_samples});
   report_finished_samples(json, job);
-  cli_json_count(json, "clouds", s->n_clouds);
-  cli_json_count(json, "levels", (uint64_t)s->n_levels);
-  cli_json_count(json, "bytes", s->n_bytes);
-  cli_json_number(json, "bits_per_sample", 8.0 * (double)s->n_bytes / (double)s->n_samples);
-  cli_json_number(json, "spacing", s->spacing);
-  cli_json_number(json, "quantum", s->quantum);
+  cli_json_counts(json, NULL, {"clouds", s->n_clouds}, {"levels", (uint64_t)s->n_levels}, {"bytes", s->n_bytes});
+  cli_json_figures(json, NULL, {"bits_per_sample", 8.0 * (double)s->n_bytes / (double)s->n_samples},
+                   {"spacing", s->spacing}, {"quantum", s->quantum});
   cli_color_report(json, &job->coloring.done);
   cli_build_report_cost(json, &job->base, "points_per_s", (double)s->n_in / job->base.total_seconds);
   cli_json_skipped(json, &repairs);

@@ -74,8 +74,7 @@ void cli_accumulate_report(cli_json *json, const cli_render_job *job) {
   if (!own->n_samples)
     return;
   cli_json_object(json, "accumulated");
-  cli_json_count(json, "samples", own->facts.end_sample);
-  cli_json_count(json, "resumed", own->n_resumed);
+  cli_json_counts(json, NULL, {"samples", own->facts.end_sample}, {"resumed", own->n_resumed});
   if (own->reached_noise >= 0.0)
     cli_json_number(json, "noise", own->reached_noise);
   if (job->shot.aperture.diameter > 0.0)

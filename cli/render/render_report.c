@@ -98,19 +98,14 @@ static conic_status report_source(cli_json *json, const cli_render_job *job) {
 static conic_status report_counts(cli_json *json, const cli_render_job *job) {
   const conic_render_statistics *s = &job->statistics;
   double overdraw = s->pixels_covered ? (double)s->fragments / (double)s->pixels_covered : 0.0;
-  cli_json_count(json, "splats_in", s->splats_in);
-  cli_json_count(json, "splats_culled", s->splats_culled);
-  cli_json_count(json, "splats_skipped", s->splats_skipped);
-  cli_json_count(json, "splats_drawn", s->splats_drawn);
-  cli_json_count(json, "splats_fallback", s->splats_fallback);
-  cli_json_count(json, "fragments", s->fragments);
-  cli_json_count(json, "pixels_covered", s->pixels_covered);
+  cli_json_counts(json, NULL, {"splats_in", s->splats_in}, {"splats_culled", s->splats_culled},
+                  {"splats_skipped", s->splats_skipped}, {"splats_drawn", s->splats_drawn},
+                  {"splats_fallback", s->splats_fallback}, {"fragments", s->fragments},
+                  {"pixels_covered", s->pixels_covered});
   if (s->triangles_in) {
-    cli_json_count(json, "triangles_in", s->triangles_in);
-    cli_json_count(json, "triangles_culled", s->triangles_culled);
-    cli_json_count(json, "triangles_skipped", s->triangles_skipped);
-    cli_json_count(json, "triangles_drawn", s->triangles_drawn);
-    cli_json_count(json, "triangle_fragments", s->triangle_fragments);
+    cli_json_counts(json, NULL, {"triangles_in", s->triangles_in}, {"triangles_culled", s->triangles_culled},
+                    {"triangles_skipped", s->triangles_skipped}, {"triangles_drawn", s->triangles_drawn},
+                    {"triangle_fragments", s->triangle_fragments});
   }
   cli_json_number(json, "overdraw", overdraw);
   cli_json_text(json, "method", cli_method_name(job));
@@ -152,8 +147,7 @@ static void report_camera(cli_json *json, const cli_render_job *job) {
 static void report_top(cli_json *json, const cli_top_job *top) {
   cli_json_object(json, "top");
   cli_json_number(json, "gsd", top->gsd);
-  cli_json_count(json, "width", (uint64_t)top->width);
-  cli_json_count(json, "height", (uint64_t)top->height);
+  cli_json_counts(json, NULL, {"width", (uint64_t)top->width}, {"height", (uint64_t)top->height});
   cli_json_array(json, "corner");
   cli_json_number(json, NULL, (double)top->column * top->gsd);
   cli_json_number(json, NULL, -(double)top->row * top->gsd);
@@ -166,17 +160,14 @@ static void report_top(cli_json *json, const cli_top_job *top) {
 
 static void report_settings(cli_json *json, const cli_render_job *job) {
   const conic_render_statistics *s = &job->statistics;
-  cli_json_text(json, "device", job->device.used);
-  cli_json_text(json, "isa", s->isa);
-  cli_json_count(json, "threads", (uint64_t)s->threads);
-  cli_json_count(json, "tile", (uint64_t)s->tile);
-  cli_json_count(json, "samples", (uint64_t)job->shot.view.samples);
+  cli_json_texts(json, NULL, {"device", job->device.used}, {"isa", s->isa});
+  cli_json_counts(json, NULL, {"threads", (uint64_t)s->threads}, {"tile", (uint64_t)s->tile},
+                  {"samples", (uint64_t)job->shot.view.samples});
   cli_accumulate_report(json, job);
   cli_json_number(json, "exposure", job->shot.render.exposure);
   cli_json_text(json, "tone", conic_tone_name((conic_tone)job->tone));
   cli_json_text(json, "epsilon_mode", s->epsilon_is_fixed ? "fixed" : "auto");
-  cli_json_number(json, "epsilon", s->epsilon);
-  cli_json_number(json, "near", s->near_z);
+  cli_json_figures(json, NULL, {"epsilon", s->epsilon}, {"near", s->near_z});
   report_camera(json, job);
   if (job->top.is_wanted)
     report_top(json, &job->top);
@@ -200,9 +191,8 @@ static void report_times(cli_json *json, const cli_render_job *job) {
   report_stages(json, stages, N_STAGES);
   cli_json_number(json, "other", 1e3 * cli_other_seconds(stages, N_STAGES, 1e-3 * job->total_ms));
   report_stages(json, of_frame, N_FRAME_STAGES);
-  cli_json_number(json, "frame_other", 1e3 * cli_other_seconds(of_frame, N_FRAME_STAGES, 1e-3 * s->ms.frame));
-  cli_json_number(json, "frame", s->ms.frame);
-  cli_json_number(json, "total", job->total_ms);
+  cli_json_figures(json, NULL, {"frame_other", 1e3 * cli_other_seconds(of_frame, N_FRAME_STAGES, 1e-3 * s->ms.frame)},
+                   {"frame", s->ms.frame}, {"total", job->total_ms});
   cli_json_close(json);
   cli_json_number(json, "ms_first", job->first_frame_ms);
   cli_json_number(json, "msplats_per_s", per_second_in_millions((double)s->splats_in, s->ms.frame));

@@ -49,12 +49,8 @@ void cli_view_stem(const conic_cameras *cameras, size_t i_view, char *stem, size
 }
 
 void cli_camera_write(cli_json *json, const conic_camera *camera) {
-  cli_json_count(json, "width", (uint64_t)camera->width);
-  cli_json_count(json, "height", (uint64_t)camera->height);
-  cli_json_number(json, "fx", camera->fx);
-  cli_json_number(json, "fy", camera->fy);
-  cli_json_number(json, "cx", camera->cx);
-  cli_json_number(json, "cy", camera->cy);
+  cli_json_counts(json, NULL, {"width", (uint64_t)camera->width}, {"height", (uint64_t)camera->height});
+  cli_json_figures(json, NULL, {"fx", camera->fx}, {"fy", camera->fy}, {"cx", camera->cx}, {"cy", camera->cy});
   if (camera->kind != CONIC_CAMERA_PERSPECTIVE)
     cli_json_text(json, "kind", conic_camera_kind_name((conic_camera_kind)camera->kind));
   if (camera->lens != CONIC_LENS_NONE) {
