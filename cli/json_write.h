@@ -3,10 +3,8 @@
 #ifndef CONIC_JSON_WRITE_H
 #define CONIC_JSON_WRITE_H
 
-#include <stdint.h>
-#include <stdio.h>
-
 #include "conic/model.h"
+#include "core/base/base.h"
 
 struct cli_host;
 

@@ -2,10 +2,8 @@
 #ifndef CONIC_SESSION_H
 #define CONIC_SESSION_H
 
-#include <stdio.h>
-
 #include "conic/conic.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 
 enum cli_exit { CLI_DONE = 0, CLI_DIFFERENT = 1, CLI_USAGE = 2, CLI_INPUT = 3, CLI_RESOURCE = 4 };
 

@@ -3,8 +3,7 @@
 #ifndef CONIC_SHELL_H
 #define CONIC_SHELL_H
 
-#include <stddef.h>
-#include <stdio.h>
+#include "core/base/base.h"
 
 /* Before anything else: arguments in UTF-8, standard streams of bytes. Null without memory. */
 char **cli_shell_begin(int *argc, char **argv);

@@ -3,9 +3,7 @@
 #ifndef CONIC_CACHE_H
 #define CONIC_CACHE_H
 
-#include <stdint.h>
-
-#include "conic/context.h"
+#include "core/base/base.h"
 
 /* "FOLDER/NAME-HASH.bin"; empty where that is too long. */
 void conic_cache_path(const char *folder, const char *name, uint64_t hash, char *path, size_t room);

@@ -2,9 +2,7 @@
 #ifndef CONIC_ORACLE_MATH_H
 #define CONIC_ORACLE_MATH_H
 
-#include <math.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "core/base/base.h"
 
 /* eˣ; relative error under 1e-15, 0 below -700 and infinite above 709. */
 double conic_oracle_exp(double x);

@@ -6,10 +6,7 @@
 #ifndef CONIC_EXECUTOR_H
 #define CONIC_EXECUTOR_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/context.h"
+#include "core/base/base.h"
 #include "core/base/clock.h"
 #include "core/base/team.h"
 

@@ -2,10 +2,7 @@
 #ifndef CONIC_CELLS_H
 #define CONIC_CELLS_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/context.h"
+#include "core/base/base.h"
 #include "core/base/team.h"
 
 typedef struct conic_cell {

@@ -3,9 +3,7 @@
 #ifndef CONIC_CELLS_RESULTS_H
 #define CONIC_CELLS_RESULTS_H
 
-#include <stddef.h>
-#include <stdint.h>
-
+#include "core/base/base.h"
 #include "core/base/team.h"
 #include "core/files/scratch.h"
 

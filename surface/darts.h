@@ -2,10 +2,7 @@
 #ifndef CONIC_DARTS_H
 #define CONIC_DARTS_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/context.h"
+#include "core/base/base.h"
 
 /* Three corners with their unit normals, and the triangle's own. If `is_bent`, places in the triangle are lifted to
  * where the corners' normals put the surface. */

@@ -2,11 +2,9 @@
 #ifndef CONIC_POINTS_INPUT_H
 #define CONIC_POINTS_INPUT_H
 
-#include <stddef.h>
-
-#include "conic/context.h"
 #include "conic/gaussians.h"
 #include "conic/model.h"
+#include "core/base/base.h"
 
 /* Whether it is read as another kind's hierarchy, which gives only places and colours. */
 int cli_points_are_hierarchy(const char *path);

@@ -2,10 +2,8 @@
 #ifndef CONIC_ASSIMP_KINDS_H
 #define CONIC_ASSIMP_KINDS_H
 
-#include <stddef.h>
-#include <stdint.h>
-
 #include "conic/model.h"
+#include "core/base/base.h"
 
 /* Whether a kind is one of Assimp's; its name is also the ending of its files. */
 static inline int conic_assimp_reads(conic_model_kind kind) {

@@ -2,8 +2,7 @@
 #ifndef CONIC_VALUE_LIMITS_H
 #define CONIC_VALUE_LIMITS_H
 
-#include <stddef.h>
-#include <stdint.h>
+#include "core/base/base.h"
 
 enum { CONIC_MOST_VALUES = 1 << 16 };
 

@@ -6,10 +6,7 @@
 #ifndef CONIC_NEIGHBOURS_H
 #define CONIC_NEIGHBOURS_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/context.h"
+#include "core/base/base.h"
 
 #define CONIC_NO_SLOT UINT32_MAX
 

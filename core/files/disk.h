@@ -4,9 +4,7 @@
 #ifndef CONIC_DISK_H
 #define CONIC_DISK_H
 
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
+#include "core/base/base.h"
 
 typedef struct conic_disk_entry {
   int is_file, is_folder; /* neither: a device, a pipe … */

@@ -3,9 +3,7 @@
 #ifndef CONIC_FILE_H
 #define CONIC_FILE_H
 
-#include <stdio.h>
-
-#include "conic/context.h"
+#include "core/base/base.h"
 
 typedef struct conic_output conic_output;
 

@@ -10,9 +10,7 @@
 #ifndef CONIC_FINISHED_H
 #define CONIC_FINISHED_H
 
-#include <stdio.h>
-
-#include "conic/context.h"
+#include "core/base/base.h"
 #include "core/files/sha256.h"
 
 typedef struct conic_finished {

@@ -2,9 +2,7 @@
 #ifndef CONIC_INFLATE_H
 #define CONIC_INFLATE_H
 
-#include <stddef.h>
-
-#include "conic/context.h"
+#include "core/base/base.h"
 
 typedef enum conic_deflate_wrapping { CONIC_DEFLATE_BARE, CONIC_DEFLATE_GZIP } conic_deflate_wrapping;
 

@@ -2,11 +2,7 @@
 #ifndef CONIC_INPUT_H
 #define CONIC_INPUT_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/context.h"
-#include "core/base/message.h"
+#include "core/base/base.h"
 
 /* The most bytes that can be asked for at once. */
 enum { CONIC_INPUT_WINDOW = 256 * 1024, CONIC_INPUT_LONGEST_WORD = 4096, CONIC_INPUT_LONGEST_LINE = 65536 };

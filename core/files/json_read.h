@@ -3,10 +3,7 @@
 #ifndef CONIC_JSON_READ_H
 #define CONIC_JSON_READ_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/context.h"
+#include "core/base/base.h"
 
 enum { CONIC_JSON_DEPTH = 64, CONIC_JSON_KEY_ROOM = 64 };
 

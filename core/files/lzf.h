@@ -3,8 +3,7 @@
 #ifndef CONIC_LZF_H
 #define CONIC_LZF_H
 
-#include <stddef.h>
-#include <stdint.h>
+#include "core/base/base.h"
 
 /* The most bytes that `n_packed` can unpack to: three of them give at most 264. */
 static inline uint64_t conic_lzf_most_bytes(uint64_t n_packed) {

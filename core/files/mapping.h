@@ -2,9 +2,7 @@
 #ifndef CONIC_MAPPING_H
 #define CONIC_MAPPING_H
 
-#include <stddef.h>
-#include <stdint.h>
-
+#include "core/base/base.h"
 #include "core/files/input.h"
 
 typedef struct conic_mapping {

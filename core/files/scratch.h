@@ -2,10 +2,7 @@
 #ifndef CONIC_SCRATCH_H
 #define CONIC_SCRATCH_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/context.h"
+#include "core/base/base.h"
 
 /* Where files must have a name for a moment, it begins so. */
 #define CONIC_SCRATCH_START ".conic-spool-"

@@ -2,8 +2,7 @@
 #ifndef CONIC_SHA256_H
 #define CONIC_SHA256_H
 
-#include <stddef.h>
-#include <stdint.h>
+#include "core/base/base.h"
 
 enum { CONIC_SHA256_ROOM = 65 };
 

@@ -2,10 +2,7 @@
 #ifndef CONIC_SPOOL_H
 #define CONIC_SPOOL_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/context.h"
+#include "core/base/base.h"
 #include "core/files/scratch.h"
 
 enum { CONIC_SPOOL_SLAB = 1 << 18 };

@@ -2,9 +2,7 @@
 #ifndef CONIC_UNBROTLI_H
 #define CONIC_UNBROTLI_H
 
-#include <stddef.h>
-
-#include "conic/context.h"
+#include "core/base/base.h"
 
 int conic_unbrotli_is_there(void);
 

@@ -2,10 +2,7 @@
 #ifndef CONIC_ZIP_H
 #define CONIC_ZIP_H
 
-#include <stdint.h>
-#include <stdio.h>
-
-#include "conic/context.h"
+#include "core/base/base.h"
 
 typedef struct conic_zip {
   conic_context *context;

@@ -2,9 +2,7 @@
 #ifndef CONIC_ZSTD_H
 #define CONIC_ZSTD_H
 
-#include <stddef.h>
-
-#include "conic/context.h"
+#include "core/base/base.h"
 
 /* One thread's state for zstd, which allocates that memory itself. */
 typedef struct conic_zstd conic_zstd;

@@ -2,12 +2,8 @@
 #ifndef CONIC_COMPARE_H
 #define CONIC_COMPARE_H
 
-#include <math.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-
 #include "conic/image.h"
+#include "core/base/base.h"
 #include "core/base/color.h"
 
 /* Sample i of a row, as bits. */

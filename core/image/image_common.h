@@ -2,11 +2,8 @@
 #ifndef CONIC_IMAGE_COMMON_H
 #define CONIC_IMAGE_COMMON_H
 
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-
 #include "conic/image.h"
+#include "core/base/base.h"
 
 #define CONIC_IMAGE_MAX_SIZE 65535
 

@@ -7,10 +7,7 @@
 #ifndef CONIC_LAZ_H
 #define CONIC_LAZ_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/context.h"
+#include "core/base/base.h"
 #include "core/files/input.h"
 
 /* Chunks have several sizes: the table counts their points. */

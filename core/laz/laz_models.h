@@ -6,10 +6,7 @@
 #ifndef CONIC_LAZ_MODELS_H
 #define CONIC_LAZ_MODELS_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/context.h"
+#include "core/base/base.h"
 
 enum { CONIC_LAZ_PROBABILITY_BITS = 15, CONIC_LAZ_BIT_PROBABILITY_BITS = 13, CONIC_LAZ_SMALL_MODEL = 16 };
 

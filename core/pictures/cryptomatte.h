@@ -3,10 +3,8 @@
 #ifndef CONIC_CRYPTOMATTE_H
 #define CONIC_CRYPTOMATTE_H
 
-#include <stddef.h>
-#include <stdint.h>
-
 #include "conic/image.h"
+#include "core/base/base.h"
 
 /* The channels' name, before the number of their layer. */
 #define CONIC_CRYPTOMATTE_NAME "CryptoObject"

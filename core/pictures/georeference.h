@@ -3,10 +3,7 @@
 #ifndef CONIC_GEOREFERENCE_H
 #define CONIC_GEOREFERENCE_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/context.h"
+#include "core/base/base.h"
 
 /* All zero: not known. The arrays share one block, which conic_georeference_release gives back. */
 typedef struct conic_georeference {

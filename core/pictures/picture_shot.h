@@ -3,9 +3,7 @@
 #ifndef CONIC_PICTURE_SHOT_H
 #define CONIC_PICTURE_SHOT_H
 
-#include <stddef.h>
-
-#include "conic/context.h"
+#include "core/base/base.h"
 
 #define CONIC_SHOT_KEYWORD "conicShot"
 

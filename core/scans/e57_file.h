@@ -2,9 +2,7 @@
 #ifndef CONIC_E57_FILE_H
 #define CONIC_E57_FILE_H
 
-#include <stddef.h>
-#include <stdint.h>
-
+#include "core/base/base.h"
 #include "core/files/input.h"
 #include "core/files/mapping.h"
 

@@ -6,11 +6,8 @@
 #ifndef CONIC_SCENE_KIND_H
 #define CONIC_SCENE_KIND_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/context.h"
 #include "conic/scene.h"
+#include "core/base/base.h"
 
 /* Even samples of a surface that has no parametrisation: the points of a cubic lattice in [-1, 1]³ that lie within half
  * a lattice spacing of it, carried onto it.

@@ -2,9 +2,7 @@
 #ifndef CONIC_FACES_H
 #define CONIC_FACES_H
 
-#include <stdint.h>
-
-#include "conic/context.h"
+#include "core/base/base.h"
 
 /* A corner without a normal or a texture coordinate. */
 #define CONIC_NO_CORNER UINT32_MAX

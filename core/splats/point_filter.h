@@ -3,9 +3,7 @@
 #ifndef CONIC_POINT_FILTER_H
 #define CONIC_POINT_FILTER_H
 
-#include <stddef.h>
-
-#include "conic/context.h"
+#include "core/base/base.h"
 
 typedef struct conic_filter conic_filter;
 

@@ -2,9 +2,7 @@
 #ifndef CONIC_WEBP_PLANE_H
 #define CONIC_WEBP_PLANE_H
 
-#include <stddef.h>
-
-#include "conic/context.h"
+#include "core/base/base.h"
 
 enum { CONIC_WEBP_MOST_PIXELS_A_SIDE = 16383 };
 

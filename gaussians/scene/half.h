@@ -2,9 +2,7 @@
 #ifndef CONIC_HALF_H
 #define CONIC_HALF_H
 
-#include <stdint.h>
-
-#include "core/base/real.h"
+#include "core/base/base.h"
 
 static inline float conic_float_of_half(uint16_t half) {
   uint32_t sign = (uint32_t)(half & 0x8000) << 16, magnitude = half & 0x7fff;

@@ -2,10 +2,7 @@
 #ifndef CONIC_CLUSTER_SITES_H
 #define CONIC_CLUSTER_SITES_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/context.h"
+#include "core/base/base.h"
 #include "core/base/radix.h"
 #include "core/splats/ellipse.h"
 #include "lod/clusters/cluster_sample.h"

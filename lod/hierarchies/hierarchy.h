@@ -8,9 +8,7 @@
 #ifndef CONIC_HIERARCHY_H
 #define CONIC_HIERARCHY_H
 
-#include <stddef.h>
-#include <stdint.h>
-
+#include "core/base/base.h"
 #include "core/files/json_read.h"
 #include "core/pictures/georeference.h"
 #include "lod/ranges/ranges.h"

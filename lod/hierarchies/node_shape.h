@@ -2,10 +2,7 @@
 #ifndef CONIC_NODE_SHAPE_H
 #define CONIC_NODE_SHAPE_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/context.h"
+#include "core/base/base.h"
 
 typedef struct conic_node_shape {
   const uint64_t *keys; /* 63-bit Morton codes, ascending */

@@ -2,11 +2,8 @@
 #ifndef CONIC_MESH_H
 #define CONIC_MESH_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/context.h"
 #include "conic/triangles.h"
+#include "core/base/base.h"
 #include "core/base/triangle_distance.h"
 
 /* Borrowed arrays; every index of a face is below n_vertices. */

@@ -3,8 +3,7 @@
 #ifndef CONIC_OCTREE_COVER_H
 #define CONIC_OCTREE_COVER_H
 
-#include <stddef.h>
-#include <stdint.h>
+#include "core/base/base.h"
 
 /* The points at which a disc is sampled. Every point of the unit disc is within the gap of one of them. */
 enum { CONIC_DISC_SAMPLES = 32 };

@@ -2,10 +2,8 @@
 #ifndef CONIC_OCTREE_NODES_H
 #define CONIC_OCTREE_NODES_H
 
-#include <stdint.h>
-
-#include "conic/context.h"
 #include "conic/octree.h"
+#include "core/base/base.h"
 #include "core/files/mapping.h"
 #include "lod/octree/octree_code.h"
 

@@ -2,8 +2,7 @@
 #ifndef CONIC_HTTP_RESPONSE_H
 #define CONIC_HTTP_RESPONSE_H
 
-#include <stddef.h>
-#include <stdint.h>
+#include "core/base/base.h"
 
 #define CONIC_HTTP_TAG 96
 

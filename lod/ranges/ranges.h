@@ -6,10 +6,7 @@
 #ifndef CONIC_RANGES_H
 #define CONIC_RANGES_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/context.h"
+#include "core/base/base.h"
 
 typedef struct conic_ranges conic_ranges;
 

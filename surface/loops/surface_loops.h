@@ -5,10 +5,8 @@
 #ifndef CONIC_SURFACE_LOOPS_H
 #define CONIC_SURFACE_LOOPS_H
 
-#include <stddef.h>
-#include <stdint.h>
-
 #include "conic/surface.h"
+#include "core/base/base.h"
 #include "core/lanes/instruction_sets.h"
 
 #define CONIC_NEAR_LANES 8

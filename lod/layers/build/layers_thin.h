@@ -3,10 +3,7 @@
 #ifndef CONIC_LAYERS_THIN_H
 #define CONIC_LAYERS_THIN_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/context.h"
+#include "core/base/base.h"
 
 /* A set of points in a grid of cells, and room for what choosing them needs; each thread has its own. Coordinates are
  * steps of the file's grid, below 2²¹, and so are lengths. */

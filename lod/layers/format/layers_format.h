@@ -3,10 +3,7 @@
 #ifndef CONIC_LAYERS_FORMAT_H
 #define CONIC_LAYERS_FORMAT_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/context.h"
+#include "core/base/base.h"
 #include "core/files/mapping.h"
 #include "lod/layers/format/layers_schema.h"
 

@@ -3,8 +3,7 @@
 #ifndef CONIC_LAYERS_SCHEMA_H
 #define CONIC_LAYERS_SCHEMA_H
 
-#include <stddef.h>
-#include <stdint.h>
+#include "core/base/base.h"
 
 /* The head of a sample, while a file is built and in its cloud: 16 bytes. Its other attributes may follow it; only
  * their coders look into them. Samples are `stride` bytes apart, a multiple of 8. */
