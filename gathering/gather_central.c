@@ -273,10 +273,8 @@ static conic_status gather_band_rows(gather_band *b) {
 static conic_status allocate_band(gather_band *b, size_t n_rows, conic_image *fine) {
   conic_context *context = b->g->context;
   size_t n_fine_rows = n_rows * b->samples, n = n_fine_rows * b->width;
-  b->side = conic_memory_allocate(context, n, sizeof *b->side);
-  b->place = conic_memory_allocate(context, n, sizeof *b->place);
-  b->boxes = conic_memory_allocate(context, n_fine_rows, CONIC_CUBE_SIDES * sizeof *b->boxes);
-  if (!b->side || !b->place || !b->boxes)
+  if (conic_memory_allocate_these(context, CONIC_ROOM(b->side, n), CONIC_ROOM(b->place, n),
+                                  CONIC_ROOM(b->boxes, CONIC_CUBE_SIDES * n_fine_rows)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   return b->samples == 1
              ? CONIC_OK

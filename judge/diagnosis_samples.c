@@ -102,11 +102,8 @@ conic_status conic_diagnosis_samples_choose(conic_context *context, const conic_
   choose_cells(image, classes, n_wrong, most_cells, is_chosen, s);
   conic_memory_release(context, is_chosen);
   const size_t room = s->n_cells * CONIC_CELL * CONIC_CELL;
-  s->places = conic_memory_allocate(context, room, sizeof *s->places);
-  s->is_wrong = conic_memory_allocate(context, room, 1);
-  s->low = conic_memory_allocate(context, room, sizeof *s->low);
-  s->high = conic_memory_allocate(context, room, sizeof *s->high);
-  if (!s->places || !s->is_wrong || !s->low || !s->high)
+  if (conic_memory_allocate_these(context, CONIC_ROOM(s->places, room), CONIC_ROOM(s->is_wrong, room),
+                                  CONIC_ROOM(s->low, room), CONIC_ROOM(s->high, room)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < s->n_cells; i++)
     take_cell(image, greatest, classes, &s->cells[i], s);

@@ -313,9 +313,8 @@ static conic_status composite_cells(planted_job *j) {
   if (!j->scratch)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < threads; i++) {
-    j->scratch[i].listed = conic_memory_allocate(j->context, j->frame.n, sizeof *j->scratch[i].listed);
-    j->scratch[i].hits = conic_memory_allocate(j->context, j->frame.n, sizeof *j->scratch[i].hits);
-    if (!j->scratch[i].listed || !j->scratch[i].hits)
+    if (conic_memory_allocate_these(j->context, CONIC_ROOM(j->scratch[i].listed, j->frame.n),
+                                    CONIC_ROOM(j->scratch[i].hits, j->frame.n)) != CONIC_OK)
       return CONIC_ERROR_MEMORY;
   }
   conic_parallel_for(j->context, j->at->n_cells, composite_cell, j);

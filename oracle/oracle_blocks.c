@@ -391,9 +391,8 @@ static conic_status gather_doubts(const oracle_job *j, worker *const *workers, i
     r->n_alternatives += workers[t]->kept.n;
     r->n_ids += workers[t]->kept.n_ids;
   }
-  r->alternatives = conic_memory_allocate(j->context, r->n_alternatives, sizeof *r->alternatives);
-  r->ids = conic_memory_allocate(j->context, r->n_ids, sizeof *r->ids);
-  if (!r->alternatives || !r->ids)
+  if (conic_memory_allocate_these(j->context, CONIC_ROOM(r->alternatives, r->n_alternatives),
+                                  CONIC_ROOM(r->ids, r->n_ids)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   size_t n = 0, n_ids = 0;
   for (int t = 0; t < n_threads; t++) {

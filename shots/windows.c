@@ -47,9 +47,8 @@ static conic_status list_windows(window_work *w, int side) {
   int rows = w->windows.band_rows;
   size_t columns = (size_t)((camera->width + side - 1) / side), n_bands = (size_t)((camera->height + rows - 1) / rows),
          most = columns * n_bands * (size_t)((rows + side - 1) / side);
-  w->list = conic_memory_allocate(w->work->context, most, sizeof *w->list);
-  w->weights = conic_memory_allocate_zeroed(w->work->context, most, sizeof *w->weights);
-  if (!w->list || !w->weights)
+  if (conic_memory_allocate_these(w->work->context, CONIC_ROOM(w->list, most), CONIC_ZEROED(w->weights, most)) !=
+      CONIC_OK)
     return CONIC_ERROR_MEMORY;
   for (int band = 0; band < camera->height; band += rows) {
     int band_end = camera->height - band < rows ? camera->height : band + rows;

@@ -97,9 +97,8 @@ static conic_status make_exchange_room(conic_context *context, splat_exchange *e
   memcpy(to->origin, e->from->origin, sizeof to->origin);
   e->n_columns = list_floats(e->from, e->own);
   list_floats(to, e->got);
-  e->ids = conic_memory_allocate(context, n, sizeof *e->ids);
-  e->parcel = conic_memory_allocate(context, (e->n_columns + 1) * PARCEL, sizeof *e->parcel);
-  return e->ids && e->parcel ? CONIC_OK : CONIC_ERROR_MEMORY;
+  return conic_memory_allocate_these(context, CONIC_ROOM(e->ids, n),
+                                     CONIC_ROOM(e->parcel, (e->n_columns + 1) * PARCEL));
 }
 
 conic_status conic_splats_exchange(conic_context *context, const conic_splats_shares *shares, const conic_splats *from,

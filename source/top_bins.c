@@ -49,9 +49,8 @@ conic_status conic_top_bins_make(conic_context *context, const conic_splats *spl
   memset(bins, 0, sizeof *bins);
   choose_squares(splats, edge, bins);
   size_t n_lists = bins->n_columns * bins->n_rows + 1;
-  bins->starts = conic_memory_allocate_zeroed(context, n_lists + 1, sizeof *bins->starts);
-  bins->members = conic_memory_allocate(context, splats->count, sizeof *bins->members);
-  if (!bins->starts || !bins->members)
+  if (conic_memory_allocate_these(context, CONIC_ZEROED(bins->starts, n_lists + 1),
+                                  CONIC_ROOM(bins->members, splats->count)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < splats->count; i++) {
     size_t list = list_of(bins, splats, cutoff, i);

@@ -39,9 +39,8 @@ static conic_status cut_into_cells(conic_context *context, const conic_dealing *
     length = window_end(&d->list[i], axis) > length ? window_end(&d->list[i], axis) : length;
   length *= d->samples;
   grid->length[axis] = length;
-  grid->cell[axis] = conic_memory_allocate_zeroed(context, (size_t)length + 1, sizeof *grid->cell[axis]);
-  grid->first[axis] = conic_memory_allocate(context, (size_t)length + 1, sizeof *grid->first[axis]);
-  if (!grid->cell[axis] || !grid->first[axis])
+  if (conic_memory_allocate_these(context, CONIC_ZEROED(grid->cell[axis], (size_t)length + 1),
+                                  CONIC_ROOM(grid->first[axis], (size_t)length + 1)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   grid->cell[axis][0] = 1;
   for (size_t i = 0; i < d->n; i++)

@@ -12,9 +12,8 @@ conic_status conic_cells_begin(conic_context *context, double side, conic_cells 
   cells->side = side;
   cells->room = FIRST_ROOM;
   cells->table_size = 4 * (size_t)FIRST_ROOM;
-  cells->cells = conic_memory_allocate(context, cells->room, sizeof *cells->cells);
-  cells->table = conic_memory_allocate_zeroed(context, cells->table_size, sizeof *cells->table);
-  return cells->cells && cells->table ? CONIC_OK : CONIC_ERROR_MEMORY;
+  return conic_memory_allocate_these(context, CONIC_ROOM(cells->cells, cells->room),
+                                     CONIC_ZEROED(cells->table, cells->table_size));
 }
 
 void conic_cells_end(conic_cells *cells) {

@@ -192,11 +192,8 @@ static void size_points(void *data, size_t i_item, int i_thread) {
 
 static conic_status size_all(conic_context *context, thin_sizing *work) {
   size_t n = work->thinned->count, n_whole = work->whole->count;
-  work->origins = conic_memory_allocate(context, n, sizeof *work->origins);
-  work->owners = conic_memory_allocate(context, n_whole, sizeof *work->owners);
-  work->owned = conic_memory_allocate(context, n_whole, sizeof *work->owned);
-  work->starts = conic_memory_allocate_zeroed(context, n + 1, sizeof *work->starts);
-  if (!work->origins || !work->owners || !work->owned || !work->starts)
+  if (conic_memory_allocate_these(context, CONIC_ROOM(work->origins, n), CONIC_ROOM(work->owners, n_whole),
+                                  CONIC_ROOM(work->owned, n_whole), CONIC_ZEROED(work->starts, n + 1)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   find_origins(work);
   conic_parallel_for(context, (n_whole + CHUNK - 1) / CHUNK, find_owners, work);

@@ -147,6 +147,17 @@ void conic_memory_release(conic_context *context, void *pointer) {
   context->options.release(context->options.allocator_cookie, raw);
 }
 
+conic_status conic_memory_allocate_all(conic_context *context, const conic_memory_room *rooms, size_t n) {
+  conic_status status = CONIC_OK;
+  for (size_t i = 0; i < n; i++) {
+    void *block = rooms[i].is_zeroed ? conic_memory_allocate_zeroed(context, rooms[i].count, rooms[i].size)
+                                     : conic_memory_allocate(context, rooms[i].count, rooms[i].size);
+    status = block ? status : CONIC_ERROR_MEMORY;
+    memcpy(rooms[i].array, &block, sizeof block);
+  }
+  return status;
+}
+
 void conic_memory_release_all(conic_context *context, void *const *pointers, size_t n) {
   for (size_t i = 0; i < n; i++)
     conic_memory_release(context, pointers[i]);

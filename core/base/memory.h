@@ -13,6 +13,25 @@ void *conic_memory_allocate(conic_context *context, size_t count, size_t size);
 /* conic_memory_allocate with all bytes zero. */
 void *conic_memory_allocate_zeroed(conic_context *context, size_t count, size_t size);
 
+/* Room for an array, by the address of its pointer. */
+typedef struct conic_memory_room {
+  void *array;
+  size_t count, size;
+  int is_zeroed;
+} conic_memory_room;
+
+#define CONIC_ROOM(array, count)                                                                                       \
+  { &(array), (count), sizeof *(array), 0 }
+#define CONIC_ZEROED(array, count)                                                                                     \
+  { &(array), (count), sizeof *(array), 1 }
+
+/* Allocates several arrays: conic_memory_allocate_these(context, CONIC_ROOM(a, n), CONIC_ZEROED(b, m)). All pointers
+ * are set, to null where there was no room; the caller releases them whatever comes back. Errors: MEMORY. */
+#define conic_memory_allocate_these(context, ...)                                                                      \
+  conic_memory_allocate_all(context, (const conic_memory_room[]){__VA_ARGS__},                                         \
+                            sizeof((const conic_memory_room[]){__VA_ARGS__}) / sizeof(conic_memory_room))
+conic_status conic_memory_allocate_all(conic_context *context, const conic_memory_room *rooms, size_t n);
+
 /* Moves `used` elements of an array into room for `count` (not below `used`) and releases the old; `array` is the
  * address of the pointer to it. On failure the array stays as it was. */
 conic_status conic_memory_grow(conic_context *context, void *array, size_t used, size_t count, size_t size);

@@ -379,10 +379,8 @@ static conic_status run_passes(conic_context *context, feature_search *s, conic_
                                conic_splats *splats) {
   size_t n = neighbourhood->tree.n_slots;
   s->neighbourhood = neighbourhood;
-  s->small = conic_memory_allocate(context, n, sizeof *s->small);
-  s->final = conic_memory_allocate(context, n, sizeof *s->final);
-  s->clips = conic_memory_allocate(context, n, sizeof *s->clips);
-  conic_status status = s->small && s->final && s->clips ? CONIC_OK : CONIC_ERROR_MEMORY;
+  conic_status status =
+      conic_memory_allocate_these(context, CONIC_ROOM(s->small, n), CONIC_ROOM(s->final, n), CONIC_ROOM(s->clips, n));
   if (status == CONIC_OK)
     status = conic_neighbourhood_list(context, neighbourhood, CONIC_SLOT_WANTED, 0.0, 0.6);
   if (status == CONIC_OK)

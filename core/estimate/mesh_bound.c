@@ -249,10 +249,8 @@ static size_t drop_leftovers(const mesh_bounding *in, conic_splats *splats) {
 
 static conic_status bound(conic_context *context, mesh_bounding *in, conic_splats *made, size_t *n_dropped) {
   size_t n = in->model->points.count, n_corners = 3 * in->model->n_triangles;
-  in->is_off = conic_memory_allocate(context, n, sizeof *in->is_off);
-  in->sources = conic_memory_allocate(context, n + n_corners, sizeof *in->sources);
-  in->triangles = conic_memory_allocate(context, n + n_corners, sizeof *in->triangles);
-  if (!in->is_off || !in->sources || !in->triangles)
+  if (conic_memory_allocate_these(context, CONIC_ROOM(in->is_off, n), CONIC_ROOM(in->sources, n + n_corners),
+                                  CONIC_ROOM(in->triangles, n + n_corners)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   conic_status status = conic_slots_for(context, n, find_off, in, 1.0, 1.0);
   if (status != CONIC_OK)

@@ -207,12 +207,9 @@ static conic_status make_room(conic_context *context, creasing *c) {
   const conic_triangles *t = c->triangles;
   size_t n = t->n_vertices;
   c->n_places = n;
-  c->place = conic_memory_allocate(context, n, sizeof *c->place);
-  c->starts = conic_memory_allocate_zeroed(context, n + 2, sizeof *c->starts);
-  c->corners = conic_memory_allocate(context, t->count, 3 * sizeof *c->corners);
-  c->normal_at = conic_memory_allocate(context, n, sizeof *c->normal_at);
-  c->normal_corners = conic_memory_allocate(context, t->count, sizeof *c->normal_corners);
-  return c->place && c->starts && c->corners && c->normal_at && c->normal_corners ? CONIC_OK : CONIC_ERROR_MEMORY;
+  return conic_memory_allocate_these(context, CONIC_ROOM(c->place, n), CONIC_ZEROED(c->starts, n + 2),
+                                     CONIC_ROOM(c->corners, 3 * t->count), CONIC_ROOM(c->normal_at, n),
+                                     CONIC_ROOM(c->normal_corners, t->count));
 }
 
 static conic_status crease_normals(conic_context *context, creasing *c, size_t *n_normals) {

@@ -63,10 +63,9 @@ static void put_tiff_head(conic_tiff *tiff) {
 static conic_status make_tables(conic_tiff *tiff) {
   size_t tile_bytes = (size_t)TILE * TILE * conic_tiff_pixel_bytes(&tiff->layout);
   tiff->packed_room = tile_bytes + tile_bytes / 8 + 1024;
-  tiff->offsets = conic_memory_allocate_zeroed(tiff->context, tiff->n_tiles, sizeof *tiff->offsets);
-  tiff->n_bytes = conic_memory_allocate_zeroed(tiff->context, tiff->n_tiles, sizeof *tiff->n_bytes);
-  tiff->packed = conic_memory_allocate(tiff->context, tiff->packed_room, 1);
-  return tiff->offsets && tiff->n_bytes && tiff->packed ? CONIC_OK : CONIC_ERROR_MEMORY;
+  return conic_memory_allocate_these(tiff->context, CONIC_ZEROED(tiff->offsets, tiff->n_tiles),
+                                     CONIC_ZEROED(tiff->n_bytes, tiff->n_tiles),
+                                     CONIC_ROOM(tiff->packed, tiff->packed_room));
 }
 
 conic_status conic_tiff_open(conic_context *context, const char *path, const conic_tiff_layout *layout,

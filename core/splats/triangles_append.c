@@ -84,9 +84,8 @@ static conic_status join_materials(conic_context *context, const conic_triangles
   if (!a->n_materials && !b->n_materials)
     return CONIC_OK;
   size_t n_first = materials_of(a), n = n_first + materials_of(b);
-  joined->materials = conic_memory_allocate(context, n, sizeof *joined->materials);
-  joined->material = conic_memory_allocate(context, joined->count, sizeof *joined->material);
-  if (!joined->materials || !joined->material)
+  if (conic_memory_allocate_these(context, CONIC_ROOM(joined->materials, n),
+                                  CONIC_ROOM(joined->material, joined->count)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < n; i++) {
     const conic_triangles *set = i < n_first ? a : b;

@@ -93,11 +93,9 @@ conic_status conic_view_rays_make(conic_context *context, const conic_camera *ca
     rays->n_blocks[axis] = (rays->n_tiles[axis] + CONIC_RAY_BLOCK - 1) / CONIC_RAY_BLOCK;
   }
   size_t n = (size_t)rays->n_tiles[0] * (size_t)rays->n_tiles[1];
-  rays->tiles = conic_memory_allocate(context, n, sizeof *rays->tiles);
-  rays->cones = conic_memory_allocate(context, n, sizeof *rays->cones);
-  rays->blocks =
-      conic_memory_allocate(context, (size_t)rays->n_blocks[0] * (size_t)rays->n_blocks[1], sizeof *rays->blocks);
-  if (!rays->tiles || !rays->cones || !rays->blocks)
+  if (conic_memory_allocate_these(context, CONIC_ROOM(rays->tiles, n), CONIC_ROOM(rays->cones, n),
+                                  CONIC_ROOM(rays->blocks, (size_t)rays->n_blocks[0] * (size_t)rays->n_blocks[1])) !=
+      CONIC_OK)
     return CONIC_ERROR_MEMORY;
   conic_camera_rays_init(camera, &j.camera_rays);
   conic_parallel_for(context, n, find_tile_rays, &j);

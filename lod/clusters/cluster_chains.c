@@ -144,12 +144,9 @@ static conic_status find(finding *f) {
   for (size_t i = 0; i < n_faces; i++)
     for (int corner = 0; corner < 3; corner++)
       n += (size_t)conic_cluster_ends_at(f->mesh, f->mesh->faces[i], corner);
-  f->edges = conic_memory_allocate(f->context, n, sizeof *f->edges);
-  f->places = conic_memory_allocate_zeroed(f->context, n_vertices, sizeof *f->places);
-  f->chains->chains = conic_memory_allocate(f->context, n, sizeof *f->chains->chains);
-  f->chains->slots = conic_memory_allocate(f->context, 2 * n, sizeof *f->chains->slots);
-  f->chains->of_vertex = conic_memory_allocate(f->context, n_vertices, sizeof *f->chains->of_vertex);
-  if (!f->edges || !f->places || !f->chains->chains || !f->chains->slots || !f->chains->of_vertex)
+  if (conic_memory_allocate_these(f->context, CONIC_ROOM(f->edges, n), CONIC_ZEROED(f->places, n_vertices),
+                                  CONIC_ROOM(f->chains->chains, n), CONIC_ROOM(f->chains->slots, 2 * n),
+                                  CONIC_ROOM(f->chains->of_vertex, n_vertices)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   memset(f->chains->of_vertex, 0xFF, n_vertices * sizeof *f->chains->of_vertex);
   find_edges(f);

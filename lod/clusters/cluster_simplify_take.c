@@ -174,10 +174,9 @@ static conic_status take_cluster(const conic_simplifier *s, uint32_t cluster, co
   memset(level, 0, sizeof *level);
   if (levels->n > 1)
     level->change = level[-1].change;
-  level->corners = conic_memory_allocate(s->context, s->alive[cluster], sizeof *level->corners);
-  level->face = conic_memory_allocate(s->context, s->alive[cluster], sizeof *level->face);
-  level->borders = conic_memory_allocate(s->context, n_borders, sizeof *level->borders);
-  if (!level->corners || !level->face || !level->borders)
+  if (conic_memory_allocate_these(s->context, CONIC_ROOM(level->corners, s->alive[cluster]),
+                                  CONIC_ROOM(level->face, s->alive[cluster]),
+                                  CONIC_ROOM(level->borders, n_borders)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   for (size_t i = starts[cluster] - starts[0]; i < starts[end] - starts[0]; i++) {
     const conic_simplifier_triangle *t = &s->triangles[i];

@@ -214,10 +214,8 @@ conic_status conic_node_shape_find(conic_context *context, const conic_node_shap
   while (n_places < 2 * n)
     n_places *= 2;
   *median = 0.0f;
-  s.table.first = conic_memory_allocate(context, n + 1, sizeof *s.table.first);
-  s.table.cell_at = conic_memory_allocate(context, n_places, sizeof *s.table.cell_at);
-  s.is_done = conic_memory_allocate_zeroed(context, n + 1, sizeof *s.is_done);
-  conic_status status = s.table.first && s.table.cell_at && s.is_done ? CONIC_OK : CONIC_ERROR_MEMORY;
+  conic_status status = conic_memory_allocate_these(
+      context, CONIC_ROOM(s.table.first, n + 1), CONIC_ROOM(s.table.cell_at, n_places), CONIC_ZEROED(s.is_done, n + 1));
   for (size_t i = 0; i < n && status == CONIC_OK; i++)
     shape->normal[0][i] = shape->normal[1][i] = shape->normal[2][i] = shape->spacing[i] = 0.0f;
   if (status == CONIC_OK && n > 1) {

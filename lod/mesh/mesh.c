@@ -274,9 +274,7 @@ static void copy_attributes(const flattening *f, conic_triangles *flat) {
 
 static conic_status number_wedges(flattening *f, uint32_t (*corners)[3]) {
   size_t n = 3 * f->mesh->count, room = (size_t)1 << (conic_bits_below(n) + 1);
-  f->wedges = conic_memory_allocate(f->context, n, sizeof *f->wedges);
-  f->table = conic_memory_allocate(f->context, room, sizeof *f->table);
-  if (!f->wedges || !f->table)
+  if (conic_memory_allocate_these(f->context, CONIC_ROOM(f->wedges, n), CONIC_ROOM(f->table, room)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   f->table_mask = room - 1;
   memset(f->table, 0xFF, room * sizeof *f->table);

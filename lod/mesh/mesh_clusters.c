@@ -195,17 +195,11 @@ static conic_status begin_joining(joining *j, const conic_mesh *mesh, const coni
   conic_unit_box box = conic_unit_box_of(mesh, adjacency);
   j->n_clusters = mesh->n_faces;
   j->n_joints = adjacency->n_joints;
-  j->joints = conic_memory_allocate(j->context, j->n_joints, sizeof *j->joints);
-  j->keys = conic_memory_allocate(j->context, j->n_joints, sizeof *j->keys);
-  j->queue.slots = conic_memory_allocate(j->context, j->n_joints, sizeof *j->queue.slots);
-  j->sums = conic_memory_allocate(j->context, j->n_clusters, sizeof *j->sums);
-  j->ring = conic_memory_allocate(j->context, j->n_clusters, sizeof *j->ring);
-  j->parent = conic_memory_allocate(j->context, j->n_clusters, sizeof *j->parent);
-  j->degree = conic_memory_allocate_zeroed(j->context, j->n_clusters, sizeof *j->degree);
-  j->grown = conic_memory_allocate_zeroed(j->context, j->n_clusters, sizeof *j->grown);
-  j->is_new = conic_memory_allocate(j->context, j->n_clusters, 1);
-  if (!j->joints || !j->keys || !j->queue.slots || !j->sums || !j->ring || !j->parent || !j->degree || !j->grown ||
-      !j->is_new)
+  if (conic_memory_allocate_these(j->context, CONIC_ROOM(j->joints, j->n_joints), CONIC_ROOM(j->keys, j->n_joints),
+                                  CONIC_ROOM(j->queue.slots, j->n_joints), CONIC_ROOM(j->sums, j->n_clusters),
+                                  CONIC_ROOM(j->ring, j->n_clusters), CONIC_ROOM(j->parent, j->n_clusters),
+                                  CONIC_ZEROED(j->degree, j->n_clusters), CONIC_ZEROED(j->grown, j->n_clusters),
+                                  CONIC_ROOM(j->is_new, j->n_clusters)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   double whole_area = 0.0;
   j->queue.keys = j->keys;
@@ -257,10 +251,8 @@ static size_t count_roots(joining *j, const conic_adjacency *adjacency) {
 /* Numbers the clusters by their first faces. The rings are not needed any more and hold the numbers. */
 static conic_status collect_clusters(joining *j, const conic_adjacency *adjacency, conic_mesh_clusters *clusters) {
   size_t n = count_roots(j, adjacency);
-  clusters->of_face = conic_memory_allocate(j->context, j->n_clusters, sizeof *clusters->of_face);
-  clusters->is_gathered = conic_memory_allocate(j->context, n, 1);
-  clusters->sums = conic_memory_allocate(j->context, n, sizeof *clusters->sums);
-  if (!clusters->of_face || !clusters->is_gathered || !clusters->sums)
+  if (conic_memory_allocate_these(j->context, CONIC_ROOM(clusters->of_face, j->n_clusters),
+                                  CONIC_ROOM(clusters->is_gathered, n), CONIC_ROOM(clusters->sums, n)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   memset(j->ring, 0xFF, j->n_clusters * sizeof *j->ring);
   for (size_t i = 0; i < j->n_clusters; i++) {

@@ -167,12 +167,9 @@ static conic_status make_room_in_worker(const oracle_bound_request *b, cell_work
   release_worker(b->context, w);
   memset(w, 0, sizeof *w);
   w->room = n + n / 2;
-  w->gaussians = conic_memory_allocate(b->context, w->room, sizeof *w->gaussians);
-  w->order = conic_memory_allocate(b->context, w->room, sizeof *w->order);
-  w->meetings = conic_memory_allocate(b->context, w->room, sizeof *w->meetings);
-  w->steps = conic_memory_allocate(b->context, w->room, sizeof *w->steps);
-  w->has_color = conic_memory_allocate(b->context, w->room, sizeof *w->has_color);
-  return w->gaussians && w->order && w->meetings && w->steps && w->has_color ? CONIC_OK : CONIC_ERROR_MEMORY;
+  return conic_memory_allocate_these(b->context, CONIC_ROOM(w->gaussians, w->room), CONIC_ROOM(w->order, w->room),
+                                     CONIC_ROOM(w->meetings, w->room), CONIC_ROOM(w->steps, w->room),
+                                     CONIC_ROOM(w->has_color, w->room));
 }
 
 static int may_reach(const oracle_uncertain *g, double x, double y) {

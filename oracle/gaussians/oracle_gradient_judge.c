@@ -309,9 +309,8 @@ static void find_offs(void *data, size_t i_run, int i_thread) {
 static conic_status prepare_judging(oracle_gradient_job *j, oracle_entry *e) {
   oracle_gradient_judging *g = j->judging;
   const size_t n = j->set->count;
-  g->offs = conic_memory_allocate_zeroed(j->context, n, sizeof *g->offs);
-  g->is_open_pixel = conic_memory_allocate_zeroed(j->context, e->bounding.n_pixels, 1);
-  if (!g->offs || !g->is_open_pixel)
+  if (conic_memory_allocate_these(j->context, CONIC_ZEROED(g->offs, n),
+                                  CONIC_ZEROED(g->is_open_pixel, e->bounding.n_pixels)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   conic_float_model own;
   oracle_doubting in_double = e->bounding.doubting;

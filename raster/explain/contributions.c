@@ -30,12 +30,9 @@ static conic_status project_all(conic_contributions *c) {
   size_t n = c->splats->count;
   projected->chunk_size = CHUNK;
   projected->n_chunks = n / CHUNK + 1;
-  projected->chunks = conic_memory_allocate(c->context, projected->n_chunks, sizeof *projected->chunks);
-  projected->footprints = conic_memory_allocate(c->context, n, sizeof *projected->footprints);
-  projected->boxes = conic_memory_allocate(c->context, n, sizeof *projected->boxes);
-  projected->surfaces = conic_memory_allocate(c->context, n, sizeof *projected->surfaces);
-  projected->rays = conic_memory_allocate(c->context, n, sizeof *projected->rays);
-  if (!projected->chunks || !projected->footprints || !projected->boxes || !projected->surfaces || !projected->rays)
+  if (conic_memory_allocate_these(c->context, CONIC_ROOM(projected->chunks, projected->n_chunks),
+                                  CONIC_ROOM(projected->footprints, n), CONIC_ROOM(projected->boxes, n),
+                                  CONIC_ROOM(projected->surfaces, n), CONIC_ROOM(projected->rays, n)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   if (c->splats->n_clips) {
     projected->clips = conic_memory_allocate(c->context, n, sizeof *projected->clips);

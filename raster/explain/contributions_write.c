@@ -200,12 +200,9 @@ static void work_out(void *data, size_t i_item, int i_thread) {
 }
 
 static conic_status allocate_line(conic_context *context, size_t width, line *l) {
-  l->threshold = conic_memory_allocate(context, width, sizeof *l->threshold);
-  l->nearest = conic_memory_allocate(context, width, sizeof *l->nearest);
-  l->triangles = conic_memory_allocate(context, width, sizeof *l->triangles);
-  l->counts = conic_memory_allocate(context, width, sizeof *l->counts);
-  l->next = conic_memory_allocate(context, width, sizeof *l->next);
-  return l->threshold && l->nearest && l->triangles && l->counts && l->next ? CONIC_OK : CONIC_ERROR_MEMORY;
+  return conic_memory_allocate_these(context, CONIC_ROOM(l->threshold, width), CONIC_ROOM(l->nearest, width),
+                                     CONIC_ROOM(l->triangles, width), CONIC_ROOM(l->counts, width),
+                                     CONIC_ROOM(l->next, width));
 }
 
 static void release_line(conic_context *context, line *l) {

@@ -57,9 +57,7 @@ static conic_status begin_box_search(conic_context *context, const conic_camera 
   s->view.needs_nearness = options->passes != 1; /* what is not finite is skipped */
   s->view.needs_slope = options->passes != 1 || planes >> CONIC_PLANE_Z & 1;
   size_t n_threads = (size_t)conic_context_threads(context);
-  s->records = conic_memory_allocate(context, n_threads, sizeof *s->records);
-  s->counts = conic_memory_allocate_zeroed(context, n_threads, sizeof *s->counts);
-  return s->records && s->counts ? CONIC_OK : CONIC_ERROR_MEMORY;
+  return conic_memory_allocate_these(context, CONIC_ROOM(s->records, n_threads), CONIC_ZEROED(s->counts, n_threads));
 }
 
 conic_status conic_splats_find_boxes(conic_context *context, const conic_splats *splats, const conic_camera *camera,

@@ -273,10 +273,8 @@ static void draw_sheet_line(void *data, size_t i_item, int i_thread) {
 }
 
 static conic_status begin_line_room(conic_context *context, size_t width, line_room *room) {
-  room->first_splat = conic_memory_allocate(context, width, sizeof *room->first_splat);
-  room->last_splat = conic_memory_allocate(context, width, sizeof *room->last_splat);
-  room->first_triangle = conic_memory_allocate(context, width, sizeof *room->first_triangle);
-  return room->first_splat && room->last_splat && room->first_triangle ? CONIC_OK : CONIC_ERROR_MEMORY;
+  return conic_memory_allocate_these(context, CONIC_ROOM(room->first_splat, width), CONIC_ROOM(room->last_splat, width),
+                                     CONIC_ROOM(room->first_triangle, width));
 }
 
 static void release_line_room(conic_context *context, line_room *room) {

@@ -51,9 +51,8 @@ int conic_drawing_is_transparent(const conic_drawing *drawing) {
 static conic_status make_transparent_marks(transparent *t) {
   const conic_splats *splats = t->drawing->splats;
   const conic_triangles *triangles = t->drawing->triangles;
-  t->splat_marks = conic_memory_allocate(t->context, splats->count, sizeof *t->splat_marks);
-  t->materials = conic_memory_allocate_zeroed(t->context, triangles ? triangles->n_materials : 0, sizeof *t->materials);
-  if (!t->splat_marks || !t->materials)
+  if (conic_memory_allocate_these(t->context, CONIC_ROOM(t->splat_marks, splats->count),
+                                  CONIC_ZEROED(t->materials, triangles ? triangles->n_materials : 0)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < splats->count; i++)
     t->splat_marks[i] = splats->opacity && splats->opacity[i] != 1.0f ? 1.0f : 0.0f;

@@ -158,12 +158,10 @@ conic_status conic_patch_mesh_create(conic_context *context, const conic_triangl
   *mesh = (conic_patch_mesh){.triangles = triangles};
   if (!triangles || triangles->count >= UINT32_MAX / 3)
     return CONIC_OK;
-  mesh->slots = conic_memory_allocate(context, triangles->n_vertices, sizeof *mesh->slots);
-  mesh->starts = conic_memory_allocate_zeroed(context, tree->n_slots + 2, sizeof *mesh->starts);
-  mesh->corners = conic_memory_allocate(context, 3 * triangles->count, sizeof *mesh->corners);
-  mesh->is_smooth = conic_memory_allocate_zeroed(context, tree->n_slots, 1);
-  mesh->n_sides = conic_memory_allocate_zeroed(context, tree->n_slots, 1);
-  if (!mesh->slots || !mesh->starts || !mesh->corners || !mesh->is_smooth || !mesh->n_sides)
+  if (conic_memory_allocate_these(
+          context, CONIC_ROOM(mesh->slots, triangles->n_vertices), CONIC_ZEROED(mesh->starts, tree->n_slots + 2),
+          CONIC_ROOM(mesh->corners, 3 * triangles->count), CONIC_ZEROED(mesh->is_smooth, tree->n_slots),
+          CONIC_ZEROED(mesh->n_sides, tree->n_slots)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   for (int axis = 0; axis < 3; axis++) {
     double side = (double)tree->boxes[0][3 + axis] - (double)tree->boxes[0][axis];

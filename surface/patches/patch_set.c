@@ -360,10 +360,9 @@ static conic_status prepare_sides(laying *work) {
       conic_patch_mesh_create(context, patches->options.mesh, tree, patches->splats.origin, &work->mesh);
   if (status != CONIC_OK || !mesh->n_sides)
     return status;
-  work->first_sides = conic_memory_allocate_zeroed(context, tree->n_slots, sizeof *work->first_sides);
-  work->is_laid = conic_memory_allocate_zeroed(context, tree->n_slots, 1);
-  patches->side_of_point = conic_memory_allocate_zeroed(context, tree->n_points, sizeof *patches->side_of_point);
-  if (!work->first_sides || !work->is_laid || !patches->side_of_point)
+  if (conic_memory_allocate_these(context, CONIC_ZEROED(work->first_sides, tree->n_slots),
+                                  CONIC_ZEROED(work->is_laid, tree->n_slots),
+                                  CONIC_ZEROED(patches->side_of_point, tree->n_points)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < tree->n_points; i++)
     if (tree->slot_of_point[i] != CONIC_NO_SLOT)

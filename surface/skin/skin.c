@@ -65,10 +65,8 @@ static conic_status find_own_normals(conic_skin_search *search) {
 /* Finds normals, colours and lifts; all later steps use these normals. */
 static conic_status look_all_over(conic_skin_search *search, conic_skin *skin) {
   size_t n = search->splats->count;
-  skin->normal = conic_memory_allocate_zeroed(search->context, n, sizeof *skin->normal);
-  skin->color = conic_memory_allocate_zeroed(search->context, n, sizeof *skin->color);
-  skin->lift = conic_memory_allocate_zeroed(search->context, n, sizeof *skin->lift);
-  if (!skin->normal || !skin->color || !skin->lift)
+  if (conic_memory_allocate_these(search->context, CONIC_ZEROED(skin->normal, n), CONIC_ZEROED(skin->color, n),
+                                  CONIC_ZEROED(skin->lift, n)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   conic_skin_look(search, skin);
   for (size_t slot = 0; slot < search->tree.n_slots; slot++)
@@ -254,9 +252,8 @@ static conic_status fill_skin(const conic_skin_search *search, conic_skin *skin)
   conic_context *context = search->context;
   size_t n = search->splats->count;
   skin->n_triangles = search->n_triangles;
-  skin->corners = conic_memory_allocate(context, search->n_triangles, sizeof *skin->corners);
-  skin->is_inner = conic_memory_allocate_zeroed(context, n, 1);
-  if (!skin->corners || !skin->is_inner)
+  if (conic_memory_allocate_these(context, CONIC_ROOM(skin->corners, search->n_triangles),
+                                  CONIC_ZEROED(skin->is_inner, n)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < search->n_triangles; i++)
     for (int k = 0; k < 3; k++)

@@ -219,10 +219,8 @@ static conic_status order_clusters(building *b) {
 
 static conic_status make_clusters(building *b) {
   size_t n = b->clusters.n_clusters;
-  b->faces = conic_memory_allocate(b->context, b->flat.count, sizeof *b->faces);
-  b->starts = conic_memory_allocate(b->context, n + 2, sizeof *b->starts);
-  b->ways = conic_memory_allocate_zeroed(b->context, n, sizeof *b->ways);
-  if (!b->faces || !b->starts || !b->ways)
+  if (conic_memory_allocate_these(b->context, CONIC_ROOM(b->faces, b->flat.count), CONIC_ROOM(b->starts, n + 2),
+                                  CONIC_ZEROED(b->ways, n)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   sort_faces(b);
   return order_clusters(b);

@@ -136,9 +136,8 @@ static conic_status build_large(large_building *b, const char *mesh, const char 
   b->report->nan = counts.nan;
   b->report->zero = counts.zero;
   b->report->cluster_seconds = conic_seconds_now() - start;
-  b->lengths = conic_memory_allocate(context, conic_mesh_cells_count(b->cells), sizeof *b->lengths);
-  b->hybrid->pile = conic_memory_allocate_zeroed(context, 1, sizeof *b->hybrid->pile);
-  if (!b->lengths || !b->hybrid->pile)
+  if (conic_memory_allocate_these(context, CONIC_ROOM(b->lengths, conic_mesh_cells_count(b->cells)),
+                                  CONIC_ZEROED(b->hybrid->pile, 1)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   b->hybrid->pile->file.file.descriptor = -1;
   status = conic_pile_begin(context, path, &b->hybrid->pile->file);

@@ -125,11 +125,9 @@ static void begin_header(packing *p) {
 static conic_status sort_chains(packing *p) {
   conic_context *context = p->job->context;
   const conic_cluster_chains *c = &p->job->chains;
-  p->first_slots = conic_memory_allocate(context, c->n_chains, sizeof *p->first_slots);
-  p->of_slot = conic_memory_allocate(context, c->n_slots, sizeof *p->of_slot);
-  p->chain_starts = conic_memory_allocate_zeroed(context, p->n_clusters + 2, sizeof *p->chain_starts);
-  p->chains_by = conic_memory_allocate(context, 2 * c->n_chains, sizeof *p->chains_by);
-  if (!p->first_slots || !p->of_slot || !p->chain_starts || !p->chains_by)
+  if (conic_memory_allocate_these(context, CONIC_ROOM(p->first_slots, c->n_chains), CONIC_ROOM(p->of_slot, c->n_slots),
+                                  CONIC_ZEROED(p->chain_starts, p->n_clusters + 2),
+                                  CONIC_ROOM(p->chains_by, 2 * c->n_chains)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < 2 * c->n_chains; i++)
     p->chain_starts[c->chains[i / 2].clusters[i % 2] + 2]++;
@@ -472,11 +470,8 @@ static conic_status pack_chunks(packing *p) {
 static conic_status pack(packing *p) {
   conic_context *context = p->job->context;
   size_t most = most_faces(p), n_chains = p->job->chains.n_slots;
-  p->corners = conic_memory_allocate(context, most, sizeof *p->corners);
-  p->listed = conic_memory_allocate(context, 3 * most + n_chains, sizeof *p->listed);
-  p->faces.corners = conic_memory_allocate(context, most, sizeof *p->faces.corners);
-  p->faces.face = conic_memory_allocate(context, most, sizeof *p->faces.face);
-  if (!p->corners || !p->listed || !p->faces.corners || !p->faces.face)
+  if (conic_memory_allocate_these(context, CONIC_ROOM(p->corners, most), CONIC_ROOM(p->listed, 3 * most + n_chains),
+                                  CONIC_ROOM(p->faces.corners, most), CONIC_ROOM(p->faces.face, most)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   conic_status status = sort_chains(p);
   if (status == CONIC_OK)

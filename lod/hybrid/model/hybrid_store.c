@@ -37,9 +37,8 @@ conic_status conic_hybrid_store_open(const conic_hybrid *h, const char *name, co
   store->data_at = store->traffic.n_bytes = data_at;
   store->cache_bytes = cache_bytes ? cache_bytes : UINT64_MAX;
   store->newest = store->oldest = CONIC_NO_CHUNK;
-  store->name = conic_memory_allocate(h->context, strlen(name) + 1, 1);
-  store->slots = conic_memory_allocate_zeroed(h->context, conic_hybrid_count_chunks(h), sizeof *store->slots);
-  if (!store->name || !store->slots)
+  if (conic_memory_allocate_these(h->context, CONIC_ROOM(store->name, strlen(name) + 1),
+                                  CONIC_ZEROED(store->slots, conic_hybrid_count_chunks(h))) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   memcpy(store->name, name, strlen(name) + 1);
   return CONIC_OK;

@@ -199,10 +199,8 @@ conic_status conic_layers_find_normals(const conic_layers_plan *plan, unsigned c
   sample_grid g = {.n = n, .n_chains = 64};
   while (g.n_chains < n)
     g.n_chains *= 2;
-  g.at = conic_memory_allocate(context, n, sizeof *g.at);
-  g.first = conic_memory_allocate(context, g.n_chains, sizeof *g.first);
-  g.next = conic_memory_allocate(context, n, sizeof *g.next);
-  conic_status status = g.at && g.first && g.next ? CONIC_OK : CONIC_ERROR_MEMORY;
+  conic_status status =
+      conic_memory_allocate_these(context, CONIC_ROOM(g.at, n), CONIC_ROOM(g.first, g.n_chains), CONIC_ROOM(g.next, n));
   if (status == CONIC_OK) {
     double reach = first_reach * plan->spacing / plan->quantum;
     size_t n_left = n;

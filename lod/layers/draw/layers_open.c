@@ -106,9 +106,8 @@ static void drop_start(conic_layers *layers, layers_start *start) {
 
 static conic_status take_index(conic_layers *layers, const unsigned char *bytes) {
   conic_layers_header *header = &layers->header;
-  layers->entries = conic_memory_allocate(layers->context, header->n_clouds, sizeof *layers->entries);
-  layers->first_sample = conic_memory_allocate(layers->context, header->n_clouds, sizeof *layers->first_sample);
-  if (!layers->entries || !layers->first_sample)
+  if (conic_memory_allocate_these(layers->context, CONIC_ROOM(layers->entries, header->n_clouds),
+                                  CONIC_ROOM(layers->first_sample, header->n_clouds)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   conic_status status = conic_layers_read_index(layers->context, layers->name, header, bytes, layers->entries);
   uint64_t first = 0;

@@ -144,9 +144,8 @@ conic_status conic_layers_windows_plan(const conic_layers_parting *parting, coni
   choose_cells(parting, windows);
   size_t n_cells = (size_t)windows->n_columns * (size_t)windows->n_rows;
   size_t n_corners = (size_t)(windows->n_columns + 1) * (size_t)(windows->n_rows + 1);
-  windows->window_of = conic_memory_allocate(context, n_cells, sizeof *windows->window_of);
-  p.sums = conic_memory_allocate_zeroed(context, n_corners, sizeof *p.sums);
-  conic_status status = windows->window_of && p.sums ? CONIC_OK : CONIC_ERROR_MEMORY;
+  conic_status status =
+      conic_memory_allocate_these(context, CONIC_ROOM(windows->window_of, n_cells), CONIC_ZEROED(p.sums, n_corners));
   if (status == CONIC_OK)
     sum_cells(&p);
   for (int row = 0; row < windows->n_rows && status == CONIC_OK; row += windows->rows_a_band) {

@@ -153,10 +153,8 @@ static conic_status make_stage(const layers_checking *c, const stage *above, con
   s->entry = entry;
   for (s->n_cells = 64; s->n_cells < room; s->n_cells *= 2)
     continue;
-  s->samples = conic_memory_allocate(c->context, room, sizeof *s->samples);
-  s->next = conic_memory_allocate(c->context, room, sizeof *s->next);
-  s->first = conic_memory_allocate(c->context, s->n_cells, sizeof *s->first);
-  return s->samples && s->next && s->first ? CONIC_OK : CONIC_ERROR_MEMORY;
+  return conic_memory_allocate_these(c->context, CONIC_ROOM(s->samples, room), CONIC_ROOM(s->next, room),
+                                     CONIC_ROOM(s->first, s->n_cells));
 }
 
 static void count_defects(const layers_checking *c, const stage *s) {
