@@ -1,8 +1,6 @@
 #include "cli/device_option.h"
 
-#include <stdlib.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/lanes/instruction_sets.h"
 #include "opencl/device_name.h"
 

@@ -1,11 +1,9 @@
 #include "cli/host.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "cli/command.h"
 #include "cli/host_keeps.h"
 #include "cli/opening_key.h"
+#include "core/base/base.h"
 #include "core/files/guard.h"
 #include "shots/shot_inputs.h"
 #include "shots/shot_key.h"

@@ -1,11 +1,10 @@
 #include "cli/json_write.h"
 
 #include <inttypes.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "cli/host_keeps.h"
 #include "cli/session.h"
+#include "core/base/base.h"
 #include "core/files/file.h"
 
 /* What has_items remembers of each open object or array. */

@@ -1,6 +1,5 @@
 #include "cli/outputs.h"
 
-#include <errno.h>
 #include <strings.h>
 
 #include "core/base/base.h"

@@ -1,8 +1,7 @@
 /* The program, but for its main: finds the sub-command and hands over. */
-#include <errno.h>
-#include <string.h>
 
 #include "cli/command.h"
+#include "core/base/base.h"
 
 static void print_features(const char *label, int available) {
   fputs(label, stdout);

@@ -4,14 +4,12 @@
 #include <signal.h>
 #include <stdarg.h>
 #include <stdatomic.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "cli/host.h"
 #include "cli/host_keeps.h"
 #include "cli/shell.h"
 #include "cli/stopper.h"
-#include "core/base/clock.h"
+#include "core/base/base.h"
 #include "core/files/guard.h"
 #include "shots/executor.h"
 

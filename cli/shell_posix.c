@@ -1,12 +1,12 @@
 #include <glob.h>
 #include <signal.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/ioctl.h>
 #include <sys/resource.h>
 #include <sys/utsname.h>
 #include <time.h>
 #include <unistd.h>
+
+#include "core/base/base.h"
 
 #if defined(__GLIBC__)
 #include <malloc.h>

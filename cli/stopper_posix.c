@@ -1,6 +1,5 @@
 #include "cli/stopper.h"
 
-#include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <pthread.h>
@@ -8,7 +7,7 @@
 #include <stdatomic.h>
 #include <unistd.h>
 
-#include "core/base/message.h"
+#include "core/base/base.h"
 #include "core/files/file.h"
 
 enum { PATIENCE_MS = 300 };

@@ -1,11 +1,10 @@
 /* conic-mpi: the program over the ranks of an MPI job. */
-#include <stdlib.h>
-#include <string.h>
 
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/session_team.h"
 #include "cli/shell.h"
+#include "core/base/base.h"
 #include "core/base/machine.h"
 #include "mpi/ranks.h"
 #include "mpi/timeline.h"

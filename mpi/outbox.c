@@ -1,8 +1,8 @@
 #include "mpi/outbox.h"
 
 #include <pthread.h>
-#include <stdlib.h>
-#include <string.h>
+
+#include "core/base/base.h"
 
 typedef struct letter {
   struct letter *next;

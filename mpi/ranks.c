@@ -4,11 +4,9 @@
 #include <pthread.h>
 #include <sched.h>
 #include <stdatomic.h>
-#include <stdlib.h>
 #include <time.h>
 
 #include "core/base/base.h"
-#include "core/base/clock.h"
 #include "mpi/outbox.h"
 
 /* Counts of MPI are ints: what is longer goes in pieces. */

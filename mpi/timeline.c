@@ -1,7 +1,6 @@
 #include "mpi/timeline.h"
 
 #include <pthread.h>
-#include <stdlib.h>
 
 #include "cli/session.h"
 #include "core/base/base.h"

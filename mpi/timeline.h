@@ -2,9 +2,7 @@
 #ifndef CONIC_TIMELINE_H
 #define CONIC_TIMELINE_H
 
-#include <stdint.h>
-
-#include "core/base/clock.h"
+#include "core/base/base.h"
 
 /* Collective: from now on events are noted, and now is time 0. */
 void timeline_begin(void);

@@ -1,6 +1,5 @@
 #include "opencl/cache.h"
 
-#include <errno.h>
 #include <sys/stat.h>
 #include <unistd.h>
 

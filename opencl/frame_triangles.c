@@ -3,7 +3,6 @@
 
 #include "conic/triangles.h"
 #include "core/base/base.h"
-#include "core/base/clock.h"
 #include "core/image/texture_levels.h"
 #include "opencl/frame.h"
 #include "raster/loops/raster_loops.h"

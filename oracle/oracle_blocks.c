@@ -1,7 +1,6 @@
 #include "oracle/oracle_blocks.h"
 
 #include <stdatomic.h>
-#include <stdlib.h>
 
 #include "core/base/base.h"
 #include "oracle/oracle_weights.h"

@@ -7,7 +7,6 @@
 #define CONIC_EXECUTOR_H
 
 #include "core/base/base.h"
-#include "core/base/clock.h"
 #include "core/base/team.h"
 
 /* No unit is left. */

@@ -1,5 +1,4 @@
 /* Shots from text: by the table of fields, and strictly. */
-#include <stdlib.h>
 
 #include "core/base/base.h"
 #include "core/files/disk.h"

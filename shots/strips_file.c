@@ -1,8 +1,5 @@
 #include "shots/strips_file.h"
 
-#include <errno.h>
-#include <stdlib.h>
-
 #include "core/base/base.h"
 #include "core/files/disk.h"
 #include "core/files/guard.h"

@@ -1,8 +1,7 @@
 /* Hybrid models: a .chy, or a model built from a mesh. */
-#include <string.h>
 
 #include "conic/hybrid.h"
-#include "core/base/clock.h"
+#include "core/base/base.h"
 #include "source/mesh_input.h"
 #include "source/source_kind.h"
 

@@ -2,7 +2,6 @@
 
 #include "conic/gaussians.h"
 #include "core/base/base.h"
-#include "core/base/clock.h"
 #include "core/estimate/estimate.h"
 #include "core/formats/model_part.h"
 #include "core/image/image_common.h"

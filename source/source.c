@@ -4,7 +4,6 @@
 
 #include "conic/gaussians.h"
 #include "core/base/base.h"
-#include "core/base/clock.h"
 #include "core/base/vectors.h"
 #include "source/carried.h"
 #include "source/reach.h"

@@ -3,7 +3,6 @@
 #include "source/source_samples.h"
 
 #include "core/base/base.h"
-#include "core/base/clock.h"
 #include "core/base/vectors.h"
 
 enum { SIDE = 96, N_VIEWS = 6 };

@@ -3,8 +3,6 @@
  * sixty files whose up is known: with them no file is laid on its back. */
 #include "source/upright.h"
 
-#include <stdlib.h>
-
 #include "core/base/base.h"
 #include "core/base/vectors.h"
 

@@ -1,7 +1,5 @@
 #include "source/window_deal.h"
 
-#include <stdlib.h>
-
 #include "core/base/base.h"
 
 /* Rough costs, in one unit: setting up and sorting a splat, a sample that it may cover, and finishing a pixel's

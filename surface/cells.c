@@ -1,7 +1,5 @@
 #include "surface/cells.h"
 
-#include <stdlib.h>
-
 #include "core/base/base.h"
 
 enum { FIRST_ROOM = 256 };

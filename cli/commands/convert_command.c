@@ -1,5 +1,4 @@
 /* conic convert: writes a Gaussian scene in another format, and says what was lost. */
-#include <stdlib.h>
 
 #include "cli/command.h"
 #include "cli/commands/build_steps.h"

@@ -1,5 +1,4 @@
 /* conic diff of two folders: a table of views and means, as papers have it. */
-#include <stdlib.h>
 
 #include "cli/commands/diff_views.h"
 #include "core/base/base.h"

@@ -1,10 +1,7 @@
 #include "cli/commands/diff_views.h"
 
-#include <errno.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "cli/shell.h"
+#include "core/base/base.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/guard.h"

@@ -1,5 +1,4 @@
 /* conic explain: tells why a pixel is as it is, and where a splat is on the screen. */
-#include <stdlib.h>
 
 #include "cli/arguments.h"
 #include "cli/command.h"

@@ -1,6 +1,4 @@
 /* conic gradient: the derivative of a Gaussian scene's picture by all numbers of the scene and the camera. */
-#include <stdlib.h>
-#include <string.h>
 
 #include "cli/arguments.h"
 #include "cli/command.h"
@@ -9,6 +7,7 @@
 #include "cli/outputs.h"
 #include "conic/gaussian_gradient.h"
 #include "conic/source.h"
+#include "core/base/base.h"
 
 typedef struct gradient_job {
   cli_render_job scene;

@@ -1,13 +1,12 @@
 /* conic info: tells what a file holds, and whether it is sound. */
-#include <errno.h>
 #include <inttypes.h>
-#include <string.h>
 
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/outputs.h"
 #include "cli/scene/views.h"
 #include "cli/source_facts.h"
+#include "core/base/base.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 

@@ -1,6 +1,4 @@
 /* conic verify: how far a picture is from the oracle's reference. */
-#include <stdlib.h>
-#include <string.h>
 
 #include "cli/arguments.h"
 #include "cli/command.h"
@@ -9,6 +7,7 @@
 #include "cli/json_write.h"
 #include "cli/outputs.h"
 #include "cli/render/sample_options.h"
+#include "core/base/base.h"
 
 typedef struct verify_job {
   cli_render_job scene;

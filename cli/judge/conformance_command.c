@@ -1,6 +1,5 @@
 /* conic conformance: writes a suite with which any renderer of Gaussian scenes can be judged (docs/reference/
  * conformance.md). */
-#include <errno.h>
 
 #include "cli/command.h"
 #include "cli/commands/build_steps.h"

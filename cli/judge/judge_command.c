@@ -1,6 +1,4 @@
 /* conic judge: tells whether somebody's picture is right, pixel by pixel, and if not, where and why. */
-#include <stdlib.h>
-#include <string.h>
 
 #include "cli/command.h"
 #include "cli/commands/gaussian_commands.h"
@@ -9,6 +7,7 @@
 #include "cli/judge/judge_job.h"
 #include "cli/judge/suite_judge.h"
 #include "cli/outputs.h"
+#include "core/base/base.h"
 
 static unsigned judged_planes(const cli_judge_job *job) {
   unsigned planes = cli_is_composited(&job->scene) ? CLI_COMPOSITED_PLANES : CONIC_DRAWN_PLANES;

@@ -1,13 +1,11 @@
 #include "cli/judge/judge_gradients.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "cli/commands/gaussian_commands.h"
 #include "cli/json_write.h"
 #include "cli/outputs.h"
 #include "conic/gaussian_gradient.h"
 #include "conic/source.h"
+#include "core/base/base.h"
 
 typedef struct gradients_job {
   cli_render_job scene;

@@ -1,5 +1,4 @@
 /* conic judge --suite: judges the pictures of a whole suite. */
-#include <errno.h>
 
 #include "cli/arguments.h"
 #include "cli/json_write.h"

@@ -1,5 +1,3 @@
-#include <stdlib.h>
-
 #include "cli/points/points_input.h"
 #include "core/base/base.h"
 #include "core/files/disk.h"

@@ -1,7 +1,5 @@
 #include "cli/scene/accumulate_job.h"
 
-#include <stdlib.h>
-
 #include "cli/render/frame_files.h"
 #include "cli/render/frames.h"
 #include "cli/render/shot_record.h"

@@ -1,7 +1,5 @@
 #include "cli/render/frame_files.h"
 
-#include <stdlib.h>
-
 #include "cli/outputs.h"
 #include "cli/render/frames.h"
 #include "cli/scene/background_options.h"

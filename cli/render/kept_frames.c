@@ -1,8 +1,5 @@
 #include "cli/render/kept_frames.h"
 
-#include <errno.h>
-#include <stdlib.h>
-
 #include "cli/render/fill_shot.h"
 #include "cli/render/frame_files.h"
 #include "cli/render/frames.h"

@@ -1,10 +1,9 @@
 /* Which planes go into which file: an EXR holds all, a PFM one, and a PNG what can be looked at. What has been asked
  * for by --aov and stands in no file would be lost without a word, and is refused. */
-#include <stdlib.h>
-#include <string.h>
 #include <strings.h>
 
 #include "cli/scene/render_job.h"
+#include "core/base/base.h"
 #include "core/base/color.h"
 #include "core/files/file.h"
 

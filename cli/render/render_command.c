@@ -1,5 +1,4 @@
 /* conic render: splats, raw points or meshes in, pictures out. */
-#include <stdlib.h>
 
 #include "cli/command.h"
 #include "cli/host_keeps.h"

@@ -1,9 +1,8 @@
 /* conic render --progressive, --deadline: picture after picture as a source comes in, and within a time. */
-#include <errno.h>
-#include <string.h>
 
 #include "cli/render/shot_record.h"
 #include "cli/render/units.h"
+#include "core/base/base.h"
 #include "core/files/disk.h"
 #include "shots/stage.h"
 

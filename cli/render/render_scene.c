@@ -1,6 +1,4 @@
 /* A scene as the commands that draw one take it: opened, measured, framed. */
-#include <errno.h>
-#include <string.h>
 
 #include "cli/host_keeps.h"
 #include "cli/opening_key.h"
@@ -11,6 +9,7 @@
 #include "cli/scene/scene_options.h"
 #include "cli/scene/stereo.h"
 #include "cli/scene/views.h"
+#include "core/base/base.h"
 #include "core/files/file.h"
 #include "core/files/guard.h"
 #include "shots/way.h"

@@ -1,5 +1,3 @@
-#include <stdlib.h>
-
 #include "cli/render/shot_record.h"
 #include "cli/scene/render_job.h"
 #include "cli/top/top_tiff.h"

@@ -1,7 +1,5 @@
 #include "cli/render/shot_again.h"
 
-#include <stdlib.h>
-
 #include "cli/render/shot_record.h"
 #include "cli/scene/scene_options.h"
 #include "conic/layers_draw.h"

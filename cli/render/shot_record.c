@@ -1,11 +1,9 @@
 #include "cli/render/shot_record.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "cli/render/frames.h"
 #include "cli/scene/background_options.h"
 #include "conic/version.h"
+#include "core/base/base.h"
 #include "shots/shot_key.h"
 
 void cli_shot_settle(const cli_render_job *job, conic_shot *shot) {

@@ -1,13 +1,11 @@
 #include "cli/render/strip_pictures.h"
 
-#include <stdlib.h>
-
 #include "cli/host.h"
 #include "cli/render/frame_files.h"
 #include "cli/render/frames.h"
 #include "cli/render/units.h"
+#include "core/base/base.h"
 #include "core/base/machine.h"
-#include "core/base/message.h"
 #include "core/image/image_common.h"
 #include "shots/strips.h"
 #include "shots/windows.h"

@@ -1,8 +1,7 @@
 /* Colours of lights and backgrounds: in words, and in reports. */
-#include <stdlib.h>
-#include <string.h>
 
 #include "cli/scene/light_options.h"
+#include "core/base/base.h"
 
 int cli_parse_color_to(const char *text, size_t length, double most, float color[3]) {
   char copy[128], grey[3 * sizeof copy];

@@ -1,8 +1,6 @@
 #include "cli/scene/light_options.h"
 
-#include <stdlib.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/files/file.h"
 
 /* Chosen by eye on scans, meshes and a terrain: a warm key light from the viewer's upper left gives the shape, a cool

@@ -1,12 +1,11 @@
 /* The options of a scene and its drawing. */
-#include <stdlib.h>
-#include <string.h>
 
 #include "cli/color_options.h"
 #include "cli/scene/background_options.h"
 #include "cli/scene/light_options.h"
 #include "cli/scene/scene_options.h"
 #include "cli/scene/views.h"
+#include "core/base/base.h"
 
 static const char *const cull_words[] = {"none", "back", NULL};
 static const char *const as_words[] = {"auto", "points", "mesh", "hybrid", NULL};

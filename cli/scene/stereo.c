@@ -1,8 +1,6 @@
 #include "cli/scene/stereo.h"
 
-#include <stdlib.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "core/files/file.h"
 
 int cli_parse_convergence(const char *text, void *value) {

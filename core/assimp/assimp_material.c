@@ -1,7 +1,5 @@
 #include "core/assimp/assimp_part.h"
 
-#include <stdlib.h>
-
 #include "conic/triangles.h"
 #include "core/base/base.h"
 #include "core/base/context_struct.h"

@@ -1,7 +1,6 @@
 #include "core/assimp/assimp_process.h"
 #include "core/base/base.h"
 
-#include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>

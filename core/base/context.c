@@ -1,7 +1,6 @@
 #include "core/base/context_struct.h"
 
 #include <stdarg.h>
-#include <stdlib.h>
 
 #include "core/base/base.h"
 #include "core/base/loan_find.h"

@@ -1,7 +1,6 @@
 #include "core/base/team_runs.h"
 
 #include "core/base/base.h"
-#include "core/base/clock.h"
 #include "core/base/context_struct.h"
 
 /* Each process gets so many blocks of items, spread over the whole loop, because neighbouring items take about the same

@@ -1,5 +1,4 @@
 /* COLMAP's sparse models: cameras and images, as text and binary. */
-#include <stdlib.h>
 
 #include "core/base/base.h"
 #include "core/base/byte_order.h"

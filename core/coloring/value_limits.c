@@ -1,8 +1,6 @@
 #include "core/coloring/value_limits.h"
 
-#include <stdlib.h>
-
-#include "core/base/real.h"
+#include "core/base/base.h"
 
 uint64_t conic_value_stride(uint64_t n, uint64_t most) {
   uint64_t stride = 1;

@@ -1,13 +1,11 @@
 #include <dirent.h>
-#include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/files/disk.h"
 

@@ -1,7 +1,5 @@
 #include "core/files/file.h"
 
-#include <errno.h>
-#include <stdlib.h>
 #include <time.h>
 #include <unistd.h>
 

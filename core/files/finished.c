@@ -1,7 +1,5 @@
 #include "core/files/finished.h"
 
-#include <errno.h>
-
 #include "core/base/base.h"
 #include "core/files/disk.h"
 

@@ -1,6 +1,5 @@
 #include "core/files/input.h"
 
-#include <errno.h>
 #include <stdarg.h>
 #include <unistd.h>
 

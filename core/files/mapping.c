@@ -1,7 +1,5 @@
 #include "core/files/mapping.h"
 
-#include <errno.h>
-
 #include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/files/disk.h"

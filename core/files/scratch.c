@@ -1,6 +1,5 @@
 #include "core/files/scratch.h"
 
-#include <errno.h>
 #include <unistd.h>
 
 #include "core/base/base.h"

@@ -1,5 +1,3 @@
-#include <errno.h>
-
 #include "conic/model.h"
 #include "conic/version.h"
 #include "core/base/base.h"

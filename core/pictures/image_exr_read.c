@@ -6,7 +6,6 @@
 
 #if CONIC_HAVE_OPENEXR
 
-#include <errno.h>
 #include <stdatomic.h>
 
 #include "core/image/image_common.h"

@@ -5,8 +5,6 @@
 
 #if CONIC_HAVE_OPENEXR
 
-#include <errno.h>
-
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/image/image_common.h"

@@ -1,5 +1,4 @@
 /* Chooses an image's format: for writing by the ending of its name, for reading by the file's first bytes. */
-#include <errno.h>
 #include <strings.h>
 
 #include "conic/image.h"

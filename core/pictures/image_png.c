@@ -7,7 +7,6 @@
 
 #if CONIC_HAVE_PNG
 
-#include <errno.h>
 #include <png.h>
 
 #include "core/files/file.h"

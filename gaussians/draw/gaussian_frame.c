@@ -1,7 +1,6 @@
 /* A picture of Gaussians: set up, put in order, binned, composited. */
 
 #include "core/base/base.h"
-#include "core/base/clock.h"
 #include "core/base/radix.h"
 #include "core/image/view_arguments.h"
 #include "gaussians/draw/gaussian_device.h"

@@ -1,5 +1,4 @@
 /* Gaussian scenes by whatever format: which a file is, and its reader and writer. */
-#include <errno.h>
 
 #include "core/base/base.h"
 #include "core/base/loan_find.h"

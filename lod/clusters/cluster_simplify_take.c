@@ -1,5 +1,4 @@
 /* Levels of what simplifying has left: each cluster's triangles and their borders. */
-#include <stdlib.h>
 
 #include "core/base/base.h"
 #include "lod/clusters/cluster_simplifier.h"

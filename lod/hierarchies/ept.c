@@ -1,5 +1,4 @@
 /* EPT (Entwine point tiles): ept.json, a file of JSON a page of the hierarchy, and a file a node. */
-#include <stdlib.h>
 
 #include "core/base/base.h"
 #include "core/files/zstd.h"

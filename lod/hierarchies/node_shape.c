@@ -1,7 +1,5 @@
 #include "lod/hierarchies/node_shape.h"
 
-#include <stdlib.h>
-
 #include "core/base/base.h"
 #include "core/base/eigen.h"
 #include "core/base/rank.h"

@@ -1,7 +1,5 @@
 #include "lod/mesh/mesh_cells.h"
 
-#include <stdlib.h>
-
 #include "core/base/base.h"
 #include "core/base/radix.h"
 #include "core/files/disk.h"

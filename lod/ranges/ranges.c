@@ -1,7 +1,6 @@
 #include "lod/ranges/ranges.h"
 
 #include "core/base/base.h"
-#include "core/base/clock.h"
 #include "core/files/guard.h"
 #include "lod/ranges/ranges_backend.h"
 

@@ -13,7 +13,6 @@ conic_status conic_ranges_open_url(conic_context *context, const char *url, cons
 
 #else
 
-#include "core/base/clock.h"
 #include "core/base/machine.h"
 #include "lod/ranges/http_requests.h"
 

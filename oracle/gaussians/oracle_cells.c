@@ -1,8 +1,6 @@
 /* Cells of pixels, and the Gaussians that each may show. Nothing here knows of the renderer's tiles. */
 #include "oracle/gaussians/oracle_cells.h"
 
-#include <stdlib.h>
-
 #include "core/base/base.h"
 #include "oracle/gaussians/oracle_uncertain.h"
 

@@ -1,5 +1,4 @@
 /* A picture of Gaussians by the oracle: every pixel by itself, over all of them. */
-#include <stdlib.h>
 
 #include "core/base/base.h"
 #include "core/image/view_arguments.h"

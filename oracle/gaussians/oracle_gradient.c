@@ -1,6 +1,5 @@
 /* The derivative of a picture of Gaussians: cells of pixels, each with the Gaussians that it may show in their order,
  * and what the pixels give them summed up pixel by pixel, cell by cell, whatever thread did which. */
-#include <stdlib.h>
 
 #include "core/base/base.h"
 #include "oracle/gaussians/oracle_gradient_job.h"

@@ -6,7 +6,6 @@
  * are independent and add in squares. Errors of different pixels may depend on each other and add up.
  *
  * Decisions in doubt: each is followed the other way by itself, and what that changes is added up. */
-#include <stdlib.h>
 
 #include "core/base/base.h"
 #include "oracle/gaussians/oracle_bounded.h"

@@ -1,5 +1,4 @@
 /* Every pixel's visible splats and its visible triangle, line by line, into a deep image. */
-#include <stdlib.h>
 
 #include "core/base/base.h"
 #include "core/pictures/image_exr_deep.h"

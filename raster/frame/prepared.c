@@ -1,7 +1,6 @@
 #include "raster/view/part.h"
 
 #include "core/base/base.h"
-#include "core/base/clock.h"
 #include "core/image/view_arguments.h"
 #include "raster/frame/raster_frame.h"
 

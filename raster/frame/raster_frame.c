@@ -1,7 +1,6 @@
 #include "raster/frame/raster_frame.h"
 
 #include "core/base/base.h"
-#include "core/base/clock.h"
 #include "raster/project/clip_lines.h"
 #include "raster/tiles/lights.h"
 #include "raster/view/ticks.h"

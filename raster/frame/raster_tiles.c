@@ -1,7 +1,6 @@
 /* The tiles of a frame that is set up. */
 
 #include "core/base/base.h"
-#include "core/base/clock.h"
 #include "raster/frame/raster_frame.h"
 #include "raster/view/ticks.h"
 

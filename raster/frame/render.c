@@ -1,7 +1,6 @@
 #include "conic/render.h"
 
 #include "core/base/base.h"
-#include "core/base/clock.h"
 #include "core/splats/near.h"
 #include "raster/frame/raster_frame.h"
 #include "raster/view/slips.h"

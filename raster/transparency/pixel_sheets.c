@@ -1,8 +1,6 @@
 #include "raster/transparency/pixel_sheets.h"
 
-#include <stdlib.h>
-#include <string.h>
-
+#include "core/base/base.h"
 #include "raster/transparency/triangle_alpha.h"
 
 /* The sums over a sheet, as the picture forms them. */

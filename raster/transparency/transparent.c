@@ -3,7 +3,6 @@
 #include "conic/transparency.h"
 
 #include "core/base/base.h"
-#include "core/base/clock.h"
 #include "core/image/image_common.h"
 #include "core/image/view_arguments.h"
 #include "raster/frame/drawing.h"

@@ -2,8 +2,6 @@
  * sides says where the eye has to be. */
 #include "raster/view/drawing_frame.h"
 
-#include <stdlib.h>
-
 #include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/image/framing.h"

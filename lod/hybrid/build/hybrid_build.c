@@ -2,7 +2,6 @@
 
 #include "lod/hybrid/build/hybrid_build.h"
 #include "core/base/base.h"
-#include "core/base/clock.h"
 #include "core/splats/columns.h"
 #include "lod/hybrid/model/hybrid_model.h"
 #include "lod/mesh/mesh.h"

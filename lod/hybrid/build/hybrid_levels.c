@@ -2,7 +2,6 @@
 #include "lod/hybrid/build/hybrid_build.h"
 
 #include "core/base/base.h"
-#include "core/base/clock.h"
 #include "core/base/radix.h"
 #include "core/base/vectors.h"
 

@@ -2,8 +2,6 @@
 #include "core/base/base.h"
 #include "lod/hybrid/model/hybrid_model.h"
 
-#include <stdlib.h>
-
 /* Halves like these need no more levels of nodes than they must. */
 size_t conic_hybrid_half(size_t n) {
   return (n + 1) / 2;

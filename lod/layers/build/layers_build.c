@@ -1,10 +1,8 @@
 /* Building a layered point cloud in bounded memory: samples are put aside as they come, sorted roughly by where they
  * are, grown into a tree piece by piece, and written (docs/reference/layers.md). */
-#include <stdlib.h>
 
 #include "conic/layers.h"
 #include "core/base/base.h"
-#include "core/base/clock.h"
 #include "core/base/vectors.h"
 #include "core/files/file.h"
 #include "core/splats/columns.h"

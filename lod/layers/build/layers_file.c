@@ -1,9 +1,7 @@
 /* From a grown tree to a file. */
-#include <errno.h>
 #include <unistd.h>
 
 #include "core/base/base.h"
-#include "core/base/clock.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/mapping.h"

@@ -3,7 +3,6 @@
 #include <stdatomic.h>
 
 #include "core/base/base.h"
-#include "core/base/clock.h"
 #include "lod/layers/format/layers_axes.h"
 
 /* A group holds no more samples than this, so that progress is seen, and no more than the fraction of all of them that

@@ -1,8 +1,5 @@
 #include "lod/layers/build/layers_kept.h"
 
-#include <errno.h>
-#include <stdlib.h>
-
 #include "core/base/base.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"

@@ -1,8 +1,6 @@
 /* Occlusion culling: which places of a cut are hidden by others. No bit of the picture changes by it. */
 #include "lod/layers/draw/layers_gather.h"
 
-#include <stdlib.h>
-
 #include "core/base/base.h"
 #include "lod/layers/draw/layers_horizon.h"
 #include "raster/view/part.h"

@@ -2,8 +2,6 @@
 #include "core/base/base.h"
 #include "lod/layers/draw/layers_octree.h"
 
-#include <stdlib.h>
-
 /* A place of the index that is being made. */
 typedef struct octree_place {
   uint64_t key;

@@ -1,7 +1,6 @@
 /* Reading the pages of a hierarchy that a picture comes to. */
 
 #include "core/base/base.h"
-#include "core/base/clock.h"
 #include "lod/layers/draw/layers_octree.h"
 
 typedef struct page_reading {

@@ -1,7 +1,5 @@
 #include "lod/layers/draw/layers_spill.h"
 
-#include <stdlib.h>
-
 #include "core/base/base.h"
 
 #define NO_BLOCK UINT64_MAX

@@ -1,7 +1,6 @@
 #include "lod/layers/draw/layers_store.h"
 
 #include "core/base/base.h"
-#include "core/base/clock.h"
 #include "lod/layers/draw/layers_octree.h"
 
 /* So many answers are decoded together. */
