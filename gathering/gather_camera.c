@@ -6,10 +6,7 @@
 #include "core/image/view_arguments.h"
 #include "gathering/gather_views.h"
 
-void conic_gather_options_init_sized(conic_gather_options *options, size_t size) {
-  static const conic_gather_options own = {.size = sizeof own, .samples = 1, .fineness = 2.0, .edge = 256};
-  conic_options_give(options, size, &own);
-}
+CONIC_DEFINE_OPTIONS(conic_gather_options, .samples = 1, .fineness = 2.0, .edge = 256)
 
 int conic_gather_is_depth(conic_plane plane) {
   return plane == CONIC_PLANE_Z || plane == CONIC_PLANE_MEDIAN_Z || plane == CONIC_PLANE_INVERSE_Z;

@@ -18,10 +18,7 @@ void conic_opencl_devices_release(conic_context *context, conic_opencl_device *d
   (void)devices;
 }
 
-void conic_opencl_options_init_sized(conic_opencl_options *options, size_t size) {
-  static const conic_opencl_options own = {.size = sizeof own, .device = "opencl"};
-  conic_options_give(options, size, &own);
-}
+CONIC_DEFINE_OPTIONS(conic_opencl_options, .device = "opencl")
 
 conic_status conic_opencl_renderer_create(conic_context *context, const conic_opencl_options *options,
                                           conic_opencl_device *device, conic_renderer **renderer) {

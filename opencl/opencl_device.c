@@ -116,10 +116,7 @@ void conic_opencl_devices_release(conic_context *context, conic_opencl_device *d
   conic_memory_release(context, devices);
 }
 
-void conic_opencl_options_init_sized(conic_opencl_options *options, size_t size) {
-  static const conic_opencl_options own = {.size = sizeof own, .device = "opencl"};
-  conic_options_give(options, size, &own);
-}
+CONIC_DEFINE_OPTIONS(conic_opencl_options, .device = "opencl")
 
 /* GPUs before others, what rounds correctly before what does not. */
 static const found_device *choose_device(const found_device *found, size_t n) {

@@ -134,10 +134,7 @@ conic_status conic_oracle_render_pixels(conic_context *context, const conic_draw
   return conic_oracle_draw(context, drawing, camera, options, &request, reference);
 }
 
-void conic_oracle_asking_init_sized(conic_oracle_asking *asking, size_t size) {
-  static const conic_oracle_asking own = {.size = sizeof own, .samples = 1};
-  conic_options_give(asking, size, &own);
-}
+CONIC_DEFINE_OPTIONS(conic_oracle_asking, .samples = 1)
 
 conic_status conic_oracle_render_asked(conic_context *context, const conic_drawing *drawing, const conic_camera *camera,
                                        const conic_render_options *options, const conic_oracle_asking *asking,

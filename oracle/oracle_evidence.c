@@ -7,10 +7,7 @@ const char *conic_pixel_class_name(conic_pixel_class number) {
   return (unsigned)number < CONIC_N_PIXEL_CLASSES ? names[number] : NULL;
 }
 
-void conic_oracle_judging_init_sized(conic_oracle_judging *judging, size_t size) {
-  static const conic_oracle_judging own = {.size = sizeof own};
-  conic_options_give(judging, size, &own);
-}
+CONIC_DEFINE_ZERO_OPTIONS(conic_oracle_judging)
 
 static int is_worse_fault(const oracle_worst *w, int i, const conic_oracle_fault *fault, double severity) {
   const conic_oracle_fault *other = &w->faults[i];

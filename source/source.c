@@ -15,15 +15,9 @@ static const conic_source_kind *const kinds[] = {&conic_source_kind_gaussians, &
                                                  &conic_source_kind_octree,    &conic_source_kind_drawing};
 enum { N_KINDS = sizeof kinds / sizeof kinds[0] };
 
-void conic_source_options_init_sized(conic_source_options *options, size_t size) {
-  static const conic_source_options own = {.size = sizeof own, .cutoff = 1.5f, .n_neighbours = 20};
-  conic_options_give(options, size, &own);
-}
+CONIC_DEFINE_OPTIONS(conic_source_options, .cutoff = 1.5f, .n_neighbours = 20)
 
-void conic_source_view_init_sized(conic_source_view *view, size_t size) {
-  static const conic_source_view own = {.size = sizeof own, .only_kind = -1, .samples = 1, .color_error = 2.0};
-  conic_options_give(view, size, &own);
-}
+CONIC_DEFINE_OPTIONS(conic_source_view, .only_kind = -1, .samples = 1, .color_error = 2.0)
 
 /* --- kinds --- */
 

@@ -205,10 +205,7 @@ static const double RADIUS_SHARE = 0.97;
 /* Each pass's radius, as a share of the last. */
 static const double PASS_SHARE = 0.7;
 
-void conic_densify_options_init_sized(conic_densify_options *options, size_t size) {
-  static const conic_densify_options own = {.size = sizeof own};
-  conic_options_give(options, size, &own);
-}
+CONIC_DEFINE_ZERO_OPTIONS(conic_densify_options)
 
 typedef struct densifying {
   const conic_surface *surface;

@@ -96,10 +96,7 @@ static void clusters_release(conic_surface *surface) {
 
 enum { CHUNK = 1024, CHUNKS_A_REPORT = 16 };
 
-void conic_surface_options_init_sized(conic_surface_options *options, size_t size) {
-  static const conic_surface_options own = {.size = sizeof own, .degree = 3, .neglect = 2.0, .n_local = 32};
-  conic_options_give(options, size, &own);
-}
+CONIC_DEFINE_OPTIONS(conic_surface_options, .degree = 3, .neglect = 2.0, .n_local = 32)
 
 const char *conic_surface_outcome_name(conic_surface_outcome outcome) {
   static const char *const names[CONIC_N_SURFACE_OUTCOMES] = {"done", "not finite", "too few neighbours", "no minimum",

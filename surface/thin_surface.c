@@ -21,10 +21,7 @@ static const double FIRST_SHARE = 0.3;
 /* A stage ends when this share of its points is left: neighbours, scales and tree are then found anew. */
 static const double STAGE_SHARE = 0.6;
 
-void conic_thin_options_init_sized(conic_thin_options *options, size_t size) {
-  static const conic_thin_options own = {.size = sizeof own};
-  conic_options_give(options, size, &own);
-}
+CONIC_DEFINE_ZERO_OPTIONS(conic_thin_options)
 
 typedef struct thinning {
   conic_surface *surface; /* its h is NaN for removed slots */

@@ -16,10 +16,7 @@ static void default_release(void *cookie, void *pointer) {
   free(pointer);
 }
 
-void conic_context_options_init_sized(conic_context_options *options, size_t size) {
-  static const conic_context_options own = {.size = sizeof own, .max_texture_bytes = (size_t)4 << 30};
-  conic_options_give(options, size, &own);
-}
+CONIC_DEFINE_OPTIONS(conic_context_options, .max_texture_bytes = (size_t)4 << 30)
 
 conic_status conic_context_create(const conic_context_options *options, conic_context **context) {
   conic_context_options settings;

@@ -8,6 +8,21 @@
 /* Sets the caller's struct of `size` bytes to the defaults `own`; members that only the caller knows become zero. */
 void conic_options_give(void *theirs, size_t size, const void *own);
 
+/* Defines TYPE_init_sized, which sets a struct of options to these defaults; all else is zero. */
+/* NOLINTBEGIN(bugprone-macro-parentheses): types, which stand bare */
+#define CONIC_DEFINE_OPTIONS(type, ...)                                                                                \
+  void type##_init_sized(type *options, size_t size) {                                                                 \
+    static const type own = {.size = sizeof own, __VA_ARGS__};                                                         \
+    conic_options_give(options, size, &own);                                                                           \
+  }
+/* The same without any: all is zero. */
+#define CONIC_DEFINE_ZERO_OPTIONS(type)                                                                                \
+  void type##_init_sized(type *options, size_t size) {                                                                 \
+    static const type own = {.size = sizeof own};                                                                      \
+    conic_options_give(options, size, &own);                                                                           \
+  }
+/* NOLINTEND(bugprone-macro-parentheses) */
+
 /* Replaces the defaults `own` by the caller's values; members that the caller's struct lacks stay. Returns 0 and
  * changes nothing for null, a wrong size (below a size_t's, no multiple of it, above 4096: not initialised), or a
  * member that only the caller knows and that is not zero: it asks for something that this version cannot do. */

@@ -15,10 +15,7 @@ const char *conic_camera_file_name(conic_camera_file kind) {
   return (unsigned)kind < CONIC_N_CAMERA_FILES ? names[kind] : NULL;
 }
 
-void conic_cameras_options_init_sized(conic_cameras_options *options, size_t size) {
-  static const conic_cameras_options own = {.size = sizeof own};
-  conic_options_give(options, size, &own);
-}
+CONIC_DEFINE_ZERO_OPTIONS(conic_cameras_options)
 
 void conic_cameras_release(conic_context *context, conic_cameras *cameras) {
   if (!cameras)

@@ -31,10 +31,7 @@ typedef struct painting {
   conic_coloring *coloring;
 } painting;
 
-void conic_coloring_options_init_sized(conic_coloring_options *options, size_t size) {
-  static const conic_coloring_options own = {.size = sizeof own, .by = "rgb"};
-  conic_options_give(options, size, &own);
-}
+CONIC_DEFINE_OPTIONS(conic_coloring_options, .by = "rgb")
 
 const char *conic_ramp_name(int i) {
   return i >= 0 && i < CONIC_N_RAMPS ? ramp_names[i] : NULL;

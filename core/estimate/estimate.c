@@ -13,10 +13,7 @@
 #include "core/estimate/neighbourhood.h"
 #include "core/splats/clip.h"
 
-void conic_estimate_options_init_sized(conic_estimate_options *options, size_t size) {
-  static const conic_estimate_options own = {.size = sizeof own, .n_neighbours = 20, .cutoff = 1.5f};
-  conic_options_give(options, size, &own);
-}
+CONIC_DEFINE_OPTIONS(conic_estimate_options, .n_neighbours = 20, .cutoff = 1.5f)
 
 int conic_unit_vector(float *const arrays[3], size_t i, double unit[3]) {
   conic_vector_at(arrays, i, unit);

@@ -10,10 +10,7 @@
 #include "core/splats/faces.h"
 #include "core/splats/point_fields.h"
 
-void conic_read_options_init_sized(conic_read_options *options, size_t size) {
-  static const conic_read_options own = {.size = sizeof own, .cutoff = 1.5f};
-  conic_options_give(options, size, &own);
-}
+CONIC_DEFINE_OPTIONS(conic_read_options, .cutoff = 1.5f)
 
 const char *conic_model_kind_name(conic_model_kind kind) {
   static const char *const names[] = {

@@ -42,10 +42,7 @@ typedef struct row_cursor {
   conic_ply_encoding encoding;
 } row_cursor;
 
-void conic_write_options_init_sized(conic_write_options *options, size_t size) {
-  static const conic_write_options own = {.size = sizeof own, .cutoff = 1.5f};
-  conic_options_give(options, size, &own);
-}
+CONIC_DEFINE_OPTIONS(conic_write_options, .cutoff = 1.5f)
 
 static conic_status check_write_options(conic_context *context, const char *path, const conic_write_options *options,
                                         unsigned fields) {

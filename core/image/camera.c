@@ -15,17 +15,8 @@ const char *conic_lens_name(conic_lens lens) {
   return (unsigned)lens < CONIC_N_LENSES ? names[lens] : NULL;
 }
 
-void conic_framing_init_sized(conic_framing *framing, size_t size) {
-  static const conic_framing own = {.size = sizeof own,
-                                    .width = 1024,
-                                    .height = 1024,
-                                    .azimuth_deg = 30.0,
-                                    .elevation_deg = 15.0,
-                                    .fov_deg = 40.0,
-                                    .zoom = 1.0,
-                                    .up = {0.0, 1.0, 0.0}};
-  conic_options_give(framing, size, &own);
-}
+CONIC_DEFINE_OPTIONS(conic_framing, .width = 1024, .height = 1024, .azimuth_deg = 30.0, .elevation_deg = 15.0,
+                     .fov_deg = 40.0, .zoom = 1.0, .up = {0.0, 1.0, 0.0})
 
 static int framing_makes_sense(const conic_framing *framing) {
   double up_squared = 0.0;

@@ -5,17 +5,9 @@
 /* How far the rotation's rows may be from orthonormal: files are written with few digits. */
 static const double rotation_tolerance = 1e-3;
 
-void conic_render_options_init_sized(conic_render_options *options, size_t size) {
-  static const conic_render_options own = {.size = sizeof own,
-                                           .method = CONIC_METHOD_AUTO,
-                                           .kernel = {.cutoff = 1.5f, .a = 4.0f, .b = 1.5f, .n = 5},
-                                           .prefilter = 1.0f,
-                                           .epsilon = -1.0,
-                                           .passes = 3,
-                                           .shading = CONIC_SHADE_PHONG,
-                                           .tile = 64};
-  conic_options_give(options, size, &own);
-}
+CONIC_DEFINE_OPTIONS(conic_render_options, .method = CONIC_METHOD_AUTO,
+                     .kernel = {.cutoff = 1.5f, .a = 4.0f, .b = 1.5f, .n = 5}, .prefilter = 1.0f, .epsilon = -1.0,
+                     .passes = 3, .shading = CONIC_SHADE_PHONG, .tile = 64)
 
 const char *conic_rotation_fault(const double rows[3][4]) {
   for (int i = 0; i < 3; i++)

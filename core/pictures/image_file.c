@@ -14,10 +14,7 @@
 #include "core/pictures/image_pfm.h"
 #include "core/pictures/image_png.h"
 
-void conic_image_options_init_sized(conic_image_options *options, size_t size) {
-  static const conic_image_options own = {.size = sizeof own};
-  conic_options_give(options, size, &own);
-}
+CONIC_DEFINE_ZERO_OPTIONS(conic_image_options)
 
 const char *conic_compression_name(conic_compression compression) {
   static const char *const names[CONIC_N_COMPRESSIONS] = {"zip", "none", "rle", "zips", "piz", "pxr24"};

@@ -16,10 +16,7 @@ const char *conic_code_rounding_name(conic_code_rounding rounding) {
   return (unsigned)rounding < CONIC_N_CODE_ROUNDINGS ? names[rounding] : NULL;
 }
 
-void conic_picture_options_init_sized(conic_picture_options *options, size_t size) {
-  static const conic_picture_options own = {.size = sizeof own};
-  conic_options_give(options, size, &own);
-}
+CONIC_DEFINE_ZERO_OPTIONS(conic_picture_options)
 
 void conic_picture_release(conic_context *context, conic_picture *picture) {
   if (!picture)

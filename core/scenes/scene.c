@@ -44,11 +44,7 @@ unsigned conic_scene_fields(conic_scene_type type) {
   return !kind ? 0 : kind->edges ? fields | (unsigned)CONIC_SPLATS_CLIPS : fields;
 }
 
-void conic_scene_options_init_sized(conic_scene_options *options, size_t size) {
-  static const conic_scene_options own = {
-      .size = sizeof own, .type = CONIC_SCENE_SPHERE, .count = 100000, .cutoff = 1.5f};
-  conic_options_give(options, size, &own);
-}
+CONIC_DEFINE_OPTIONS(conic_scene_options, .type = CONIC_SCENE_SPHERE, .count = 100000, .cutoff = 1.5f)
 
 static conic_status check_scene_options(conic_context *context, const conic_scene_options *given,
                                         conic_scene_options *options) {

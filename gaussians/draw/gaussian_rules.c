@@ -41,7 +41,4 @@ const char *conic_gaussian_profile_name(conic_gaussian_profile profile) {
   return (unsigned)profile < CONIC_N_GAUSSIAN_PROFILES ? names[profile] : NULL;
 }
 
-void conic_gaussian_options_init_sized(conic_gaussian_options *options, size_t size) {
-  static const conic_gaussian_options own = {.size = sizeof own, .profile = CONIC_PROFILE_EXACT};
-  conic_options_give(options, size, &own);
-}
+CONIC_DEFINE_OPTIONS(conic_gaussian_options, .profile = CONIC_PROFILE_EXACT)

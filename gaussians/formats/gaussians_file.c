@@ -238,10 +238,7 @@ int conic_gaussians_is_packed(conic_context *context, const char *path) {
 
 /* --- reading --- */
 
-void conic_gaussians_read_options_init_sized(conic_gaussians_read_options *options, size_t size) {
-  static const conic_gaussians_read_options own = {.size = sizeof own, .most_sh_degree = CONIC_MAX_SH_DEGREE};
-  conic_options_give(options, size, &own);
-}
+CONIC_DEFINE_OPTIONS(conic_gaussians_read_options, .most_sh_degree = CONIC_MAX_SH_DEGREE)
 
 static conic_status read_ply_scene(conic_input *input, const conic_gaussians_read_options *options,
                                    conic_gaussians *gaussians) {
@@ -319,11 +316,8 @@ conic_status conic_gaussians_read(conic_context *context, const char *path, cons
 
 /* --- writing --- */
 
-void conic_gaussians_write_options_init_sized(conic_gaussians_write_options *options, size_t size) {
-  static const conic_gaussians_write_options own = {
-      .size = sizeof own, .sh_bits = {8, 8}, .spz_version = 4, .most_sh_degree = CONIC_MAX_SH_DEGREE};
-  conic_options_give(options, size, &own);
-}
+CONIC_DEFINE_OPTIONS(conic_gaussians_write_options, .sh_bits = {8, 8}, .spz_version = 4,
+                     .most_sh_degree = CONIC_MAX_SH_DEGREE)
 
 conic_status conic_gaussian_writer_put(const conic_gaussian_writer *writer, const void *bytes, size_t n_bytes) {
   if (fwrite(bytes, 1, n_bytes, writer->to) == n_bytes)

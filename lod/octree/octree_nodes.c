@@ -7,10 +7,7 @@
 
 static const size_t chunk_nodes = 4096;
 
-void conic_octree_options_init_sized(conic_octree_options *options, size_t size) {
-  static const conic_octree_options own = {.size = sizeof own, .cutoff = 1.5f};
-  conic_options_give(options, size, &own);
-}
+CONIC_DEFINE_OPTIONS(conic_octree_options, .cutoff = 1.5f)
 
 void conic_octree_destroy(conic_octree *octree) {
   if (!octree)

@@ -30,10 +30,7 @@ typedef struct octree_selecting {
   conic_put_function *put;
 } octree_selecting;
 
-void conic_selection_options_init_sized(conic_selection_options *options, size_t size) {
-  static const conic_selection_options own = {.size = sizeof own, .error_px = 1.0};
-  conic_options_give(options, size, &own);
-}
+CONIC_DEFINE_OPTIONS(conic_selection_options, .error_px = 1.0)
 
 void conic_selection_release(conic_context *context, conic_selection *selection) {
   octree_scratch *kept = selection->scratch;

@@ -26,10 +26,7 @@ void conic_float_model_init_sized(conic_float_model *model, conic_float_kind kin
   conic_options_give(model, size, &own);
 }
 
-void conic_gaussian_judging_init_sized(conic_gaussian_judging *judging, size_t size) {
-  static const conic_gaussian_judging own = {.size = sizeof own, .samples = 1};
-  conic_options_give(judging, size, &own);
-}
+CONIC_DEFINE_OPTIONS(conic_gaussian_judging, .samples = 1)
 
 const char *conic_gaussian_doubt_name(conic_gaussian_doubt doubt) {
   static const char *const names[CONIC_N_GAUSSIAN_DOUBTS] = {"least", "sign", "edge", "near", "order", "end", "most"};

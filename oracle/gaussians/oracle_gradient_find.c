@@ -14,10 +14,7 @@ const char *conic_gradient_doubt_name(int doubt) {
   return doubt >= 0 ? conic_gaussian_doubt_name((conic_gaussian_doubt)doubt) : NULL;
 }
 
-void conic_gradient_options_init_sized(conic_gradient_options *options, size_t size) {
-  static const conic_gradient_options own = {.size = sizeof own};
-  conic_options_give(options, size, &own);
-}
+CONIC_DEFINE_ZERO_OPTIONS(conic_gradient_options)
 
 const char *conic_gradient_kind_name(conic_gradient_kind kind) {
   static const char *const names[CONIC_N_GRADIENT_KINDS] = {"mean", "scale", "rotation", "opacity", "sh"};

@@ -6,11 +6,8 @@
 #include "lod/hybrid/model/hybrid_model.h"
 #include "lod/mesh/mesh.h"
 
-void conic_hybrid_options_init_sized(conic_hybrid_options *options, size_t size) {
-  static const conic_hybrid_options own = {
-      .size = sizeof own, .phase1 = 0.12, .phase2 = 0.4, .density = 2.0, .most_error = 0.5, .cutoff = 1.5f};
-  conic_options_give(options, size, &own);
-}
+CONIC_DEFINE_OPTIONS(conic_hybrid_options, .phase1 = 0.12, .phase2 = 0.4, .density = 2.0, .most_error = 0.5,
+                     .cutoff = 1.5f)
 
 typedef struct building {
   conic_context *context;

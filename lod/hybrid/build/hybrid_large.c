@@ -9,10 +9,7 @@
 /* What building takes for each face of a cell, and besides (docs/notes/hybrid-measured.md). */
 enum { BYTES_A_FACE = 640, OTHER_BYTES = 48 << 20 };
 
-void conic_hybrid_streaming_init_sized(conic_hybrid_streaming *streaming, size_t size) {
-  static const conic_hybrid_streaming own = {.size = sizeof own, .memory_bytes = UINT64_C(1) << 30, .crease_deg = 30.0};
-  conic_options_give(streaming, size, &own);
-}
+CONIC_DEFINE_OPTIONS(conic_hybrid_streaming, .memory_bytes = UINT64_C(1) << 30, .crease_deg = 30.0)
 
 /* The median length of a cell's surfels as built, and their number. */
 typedef struct cell_length {

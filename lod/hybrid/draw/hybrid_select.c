@@ -10,10 +10,7 @@
 #include "lod/hybrid/model/hybrid_chunks.h"
 #include "lod/hybrid/model/hybrid_store.h"
 
-void conic_hybrid_view_init_sized(conic_hybrid_view *view, size_t size) {
-  static const conic_hybrid_view own = {.size = sizeof own, .only_kind = -1, .color_error = CONIC_JUST_VISIBLE};
-  conic_options_give(view, size, &own);
-}
+CONIC_DEFINE_OPTIONS(conic_hybrid_view, .only_kind = -1, .color_error = CONIC_JUST_VISIBLE)
 
 void conic_hybrid_selection_release(conic_context *context, conic_hybrid_selection *selection) {
   hybrid_scratch *kept = selection->scratch;

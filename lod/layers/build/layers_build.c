@@ -29,15 +29,8 @@ struct conic_layers_builder {
 
 enum { LEAST_CLOUD = 64, MOST_CLOUD = 32768 };
 
-void conic_layers_options_init_sized(conic_layers_options *options, size_t size) {
-  static const conic_layers_options own = {.size = sizeof own,
-                                           .cloud_size = 2048,
-                                           .memory_bytes = UINT64_C(1) << 30,
-                                           .quantum = 0.5,
-                                           .quantum_in_spacings = 1,
-                                           .cutoff = 1.5f};
-  conic_options_give(options, size, &own);
-}
+CONIC_DEFINE_OPTIONS(conic_layers_options, .cloud_size = 2048, .memory_bytes = UINT64_C(1) << 30, .quantum = 0.5,
+                     .quantum_in_spacings = 1, .cutoff = 1.5f)
 
 static int are_options_sound(const conic_layers_options *options) {
   return options->cloud_size >= LEAST_CLOUD && options->cloud_size <= MOST_CLOUD && options->quantum > 0.0 &&

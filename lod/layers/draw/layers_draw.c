@@ -33,10 +33,7 @@ struct conic_layers_picture {
   double until_s;  /* nothing is read later; infinite: it takes as long as it takes */
 };
 
-void conic_layers_draw_options_init_sized(conic_layers_draw_options *options, size_t size) {
-  static const conic_layers_draw_options own = {.size = sizeof own, .samples = 1};
-  conic_options_give(options, size, &own);
-}
+CONIC_DEFINE_OPTIONS(conic_layers_draw_options, .samples = 1)
 
 static const char *what_of_draw_is_wrong(const conic_camera *camera, const conic_render_options *render,
                                          const conic_layers_draw_options *options) {

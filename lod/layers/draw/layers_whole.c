@@ -4,11 +4,8 @@
 #include "lod/layers/draw/layers_gather.h"
 #include "lod/layers/draw/layers_octree.h"
 
-void conic_layers_region_init_sized(conic_layers_region *part, size_t size) {
-  static const conic_layers_region own = {
-      .size = sizeof own, .low = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, .high = {HUGE_VAL, HUGE_VAL, HUGE_VAL}};
-  conic_options_give(part, size, &own);
-}
+CONIC_DEFINE_OPTIONS(conic_layers_region, .low = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL},
+                     .high = {HUGE_VAL, HUGE_VAL, HUGE_VAL})
 
 /* Places of a part, and their numbers. */
 typedef struct finest {
