@@ -11,11 +11,8 @@ const char *conic_oracle_question_name(conic_oracle_question question) {
   return (unsigned)question < 2 ? names[question] : NULL;
 }
 
-const char *conic_unstable_reason_name(conic_unstable_reason reason) {
-  static const char *const names[CONIC_N_UNSTABLE_REASONS] = {"cutoff", "clip",       "visibility", "formula",
-                                                              "facing", "weight_tie", "depth_tie",  "precision"};
-  return (unsigned)reason < CONIC_N_UNSTABLE_REASONS ? names[reason] : NULL;
-}
+CONIC_DEFINE_NAMES(conic_unstable_reason_name, conic_unstable_reason, CONIC_N_UNSTABLE_REASONS, "cutoff", "clip",
+                   "visibility", "formula", "facing", "weight_tie", "depth_tie", "precision")
 
 /* What a fixed, well mixed number is made of another: whatever the machine, the same pixels are judged. */
 static uint64_t mix(uint64_t x) {

@@ -1,11 +1,9 @@
 #include "oracle/oracle_evidence.h"
 
-#include "core/base/options.h"
+#include "core/base/base.h"
 
-const char *conic_pixel_class_name(conic_pixel_class number) {
-  static const char *const names[CONIC_N_PIXEL_CLASSES] = {"equal", "rounded", "explained", "wrong"};
-  return (unsigned)number < CONIC_N_PIXEL_CLASSES ? names[number] : NULL;
-}
+CONIC_DEFINE_NAMES(conic_pixel_class_name, conic_pixel_class, CONIC_N_PIXEL_CLASSES, "equal", "rounded", "explained",
+                   "wrong")
 
 CONIC_DEFINE_ZERO_OPTIONS(conic_oracle_judging)
 

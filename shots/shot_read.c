@@ -9,10 +9,8 @@
 
 enum { MOST_MEMBERS = 1 << 20, MOST_NUMBERS = 16, MOST_INPUTS = 1 << 16, MOST_REPEATS = 256 };
 
-const char *conic_shot_role_name(conic_shot_role role) {
-  static const char *const names[CONIC_N_SHOT_ROLES] = {"scene", "texture", "sky", "motion", "part"};
-  return (unsigned)role < CONIC_N_SHOT_ROLES ? names[role] : NULL;
-}
+CONIC_DEFINE_NAMES(conic_shot_role_name, conic_shot_role, CONIC_N_SHOT_ROLES, "scene", "texture", "sky", "motion",
+                   "part")
 
 /* A file that was read, and all the memory that it points to. */
 typedef struct owned_shot {

@@ -98,11 +98,8 @@ enum { CHUNK = 1024, CHUNKS_A_REPORT = 16 };
 
 CONIC_DEFINE_OPTIONS(conic_surface_options, .degree = 3, .neglect = 2.0, .n_local = 32)
 
-const char *conic_surface_outcome_name(conic_surface_outcome outcome) {
-  static const char *const names[CONIC_N_SURFACE_OUTCOMES] = {"done", "not finite", "too few neighbours", "no minimum",
-                                                              "ill-conditioned"};
-  return (unsigned)outcome < CONIC_N_SURFACE_OUTCOMES ? names[outcome] : NULL;
-}
+CONIC_DEFINE_NAMES(conic_surface_outcome_name, conic_surface_outcome, CONIC_N_SURFACE_OUTCOMES, "done", "not finite",
+                   "too few neighbours", "no minimum", "ill-conditioned")
 
 static conic_status check_surface_options(conic_context *context, const conic_surface_options *o, unsigned fields) {
   if ((unsigned)o->type > CONIC_SURFACE_APSS || (unsigned)o->plane > CONIC_PLANE_FAST ||

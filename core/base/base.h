@@ -15,6 +15,7 @@
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/names.h"
 #include "core/base/options.h"
 #include "core/base/real.h"
 #include "core/base/threads.h"

@@ -9,11 +9,8 @@
 #include "core/image/view_arguments.h"
 #include "core/pictures/image_foreign.h"
 
-const char *conic_camera_file_name(conic_camera_file kind) {
-  static const char *const names[CONIC_N_CAMERA_FILES] = {"conic",        "colmap", "transforms",
-                                                          "cameras.json", "npz",    "gltf"};
-  return (unsigned)kind < CONIC_N_CAMERA_FILES ? names[kind] : NULL;
-}
+CONIC_DEFINE_NAMES(conic_camera_file_name, conic_camera_file, CONIC_N_CAMERA_FILES, "conic", "colmap", "transforms",
+                   "cameras.json", "npz", "gltf")
 
 CONIC_DEFINE_ZERO_OPTIONS(conic_cameras_options)
 

@@ -4,16 +4,10 @@
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
 
-const char *conic_camera_kind_name(conic_camera_kind kind) {
-  static const char *const names[CONIC_N_CAMERA_KINDS] = {"perspective", "fisheye", "orthographic", "equirectangular",
-                                                          "cube"};
-  return (unsigned)kind < CONIC_N_CAMERA_KINDS ? names[kind] : NULL;
-}
+CONIC_DEFINE_NAMES(conic_camera_kind_name, conic_camera_kind, CONIC_N_CAMERA_KINDS, "perspective", "fisheye",
+                   "orthographic", "equirectangular", "cube")
 
-const char *conic_lens_name(conic_lens lens) {
-  static const char *const names[CONIC_N_LENSES] = {"none", "radial", "opencv", "thin-prism", "fov"};
-  return (unsigned)lens < CONIC_N_LENSES ? names[lens] : NULL;
-}
+CONIC_DEFINE_NAMES(conic_lens_name, conic_lens, CONIC_N_LENSES, "none", "radial", "opencv", "thin-prism", "fov")
 
 CONIC_DEFINE_OPTIONS(conic_framing, .width = 1024, .height = 1024, .azimuth_deg = 30.0, .elevation_deg = 15.0,
                      .fov_deg = 40.0, .zoom = 1.0, .up = {0.0, 1.0, 0.0})

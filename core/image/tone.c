@@ -6,10 +6,7 @@
 #include "core/base/base.h"
 #include "core/base/color.h"
 
-const char *conic_tone_name(conic_tone tone) {
-  static const char *const names[CONIC_N_TONES] = {"srgb", "filmic", "aces", "agx"};
-  return (int)tone >= 0 && tone < CONIC_N_TONES ? names[tone] : NULL;
-}
+CONIC_DEFINE_NAMES(conic_tone_name, conic_tone, CONIC_N_TONES, "srgb", "filmic", "aces", "agx")
 
 static double limit_to_screen(double v) {
   return v > 0.0 ? v < 1.0 ? v : 1.0 : 0.0; /* NaN is 0 */

@@ -3,10 +3,7 @@
 #include "core/base/base.h"
 #include "core/base/context_struct.h"
 
-const char *conic_isa_name(conic_isa isa) {
-  static const char *const names[CONIC_N_ISAS] = {"auto", "scalar", "sse2", "avx2", "avx512", "neon"};
-  return (unsigned)isa < CONIC_N_ISAS ? names[isa] : NULL;
-}
+CONIC_DEFINE_NAMES(conic_isa_name, conic_isa, CONIC_N_ISAS, "auto", "scalar", "sse2", "avx2", "avx512", "neon")
 
 conic_isa conic_isa_best(void) {
 #if defined(__x86_64__)

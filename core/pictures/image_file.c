@@ -16,10 +16,8 @@
 
 CONIC_DEFINE_ZERO_OPTIONS(conic_image_options)
 
-const char *conic_compression_name(conic_compression compression) {
-  static const char *const names[CONIC_N_COMPRESSIONS] = {"zip", "none", "rle", "zips", "piz", "pxr24"};
-  return (int)compression >= 0 && compression < CONIC_N_COMPRESSIONS ? names[compression] : NULL;
-}
+CONIC_DEFINE_NAMES(conic_compression_name, conic_compression, CONIC_N_COMPRESSIONS, "zip", "none", "rle", "zips", "piz",
+                   "pxr24")
 
 static conic_status check_image(conic_context *context, const char *path, const conic_image *image) {
   if (!image || image->width < 1 || image->height < 1 || image->width > CONIC_IMAGE_MAX_SIZE ||

@@ -11,10 +11,7 @@
 /* A value is a float before it becomes a code, and its rounding may carry it over a border. */
 #define CODE_SLACK 0x1p-22
 
-const char *conic_code_rounding_name(conic_code_rounding rounding) {
-  static const char *const names[CONIC_N_CODE_ROUNDINGS] = {"either", "nearest", "down"};
-  return (unsigned)rounding < CONIC_N_CODE_ROUNDINGS ? names[rounding] : NULL;
-}
+CONIC_DEFINE_NAMES(conic_code_rounding_name, conic_code_rounding, CONIC_N_CODE_ROUNDINGS, "either", "nearest", "down")
 
 CONIC_DEFINE_ZERO_OPTIONS(conic_picture_options)
 

@@ -1,6 +1,6 @@
 #include "gaussians/draw/gaussian_rules.h"
 
-#include "core/base/options.h"
+#include "core/base/base.h"
 
 #define LEAST_ALPHA (1.0f / 255.0f)
 #define LIKE_INRIA                                                                                                     \
@@ -34,11 +34,8 @@ const conic_gaussian_rules *conic_gaussian_rules_of(conic_gaussian_profile profi
   return (unsigned)profile < CONIC_N_GAUSSIAN_PROFILES ? &all_rules[profile] : NULL;
 }
 
-const char *conic_gaussian_profile_name(conic_gaussian_profile profile) {
-  static const char *const names[CONIC_N_GAUSSIAN_PROFILES] = {"exact",         "inria-2023",  "gsplat-1.5",
-                                                               "gsplat-1.5-aa", "gsplat-1.6",  "gsplat-1.6-aa",
-                                                               "2dgs-2024",     "2dgs-gsplat", "khr-2026"};
-  return (unsigned)profile < CONIC_N_GAUSSIAN_PROFILES ? names[profile] : NULL;
-}
+CONIC_DEFINE_NAMES(conic_gaussian_profile_name, conic_gaussian_profile, CONIC_N_GAUSSIAN_PROFILES, "exact",
+                   "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa", "2dgs-2024",
+                   "2dgs-gsplat", "khr-2026")
 
 CONIC_DEFINE_OPTIONS(conic_gaussian_options, .profile = CONIC_PROFILE_EXACT)

@@ -1,6 +1,6 @@
 /* What is known of others' floats, and the names of doubts. */
 #include "conic/gaussian_judge.h"
-#include "core/base/options.h"
+#include "core/base/base.h"
 
 /* Four times what a step rounds: orders of operations differ, and a few steps are one here. */
 #define IN_DOUBLE (4.0 * 0x1p-53)
@@ -28,16 +28,12 @@ void conic_float_model_init_sized(conic_float_model *model, conic_float_kind kin
 
 CONIC_DEFINE_OPTIONS(conic_gaussian_judging, .samples = 1)
 
-const char *conic_gaussian_doubt_name(conic_gaussian_doubt doubt) {
-  static const char *const names[CONIC_N_GAUSSIAN_DOUBTS] = {"least", "sign", "edge", "near", "order", "end", "most"};
-  return (unsigned)doubt < CONIC_N_GAUSSIAN_DOUBTS ? names[doubt] : NULL;
-}
+CONIC_DEFINE_NAMES(conic_gaussian_doubt_name, conic_gaussian_doubt, CONIC_N_GAUSSIAN_DOUBTS, "least", "sign", "edge",
+                   "near", "order", "end", "most")
 
 const char *conic_gaussian_class_name(conic_gaussian_class number) {
   return conic_pixel_class_name(number);
 }
 
-const char *conic_gaussian_part_name(conic_gaussian_part part) {
-  static const char *const names[CONIC_N_GAUSSIAN_PARTS] = {"composited", "hidden", "faint", "outside", "near"};
-  return (unsigned)part < CONIC_N_GAUSSIAN_PARTS ? names[part] : NULL;
-}
+CONIC_DEFINE_NAMES(conic_gaussian_part_name, conic_gaussian_part, CONIC_N_GAUSSIAN_PARTS, "composited", "hidden",
+                   "faint", "outside", "near")

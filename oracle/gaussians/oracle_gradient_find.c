@@ -16,10 +16,8 @@ const char *conic_gradient_doubt_name(int doubt) {
 
 CONIC_DEFINE_ZERO_OPTIONS(conic_gradient_options)
 
-const char *conic_gradient_kind_name(conic_gradient_kind kind) {
-  static const char *const names[CONIC_N_GRADIENT_KINDS] = {"mean", "scale", "rotation", "opacity", "sh"};
-  return (unsigned)kind < CONIC_N_GRADIENT_KINDS ? names[kind] : NULL;
-}
+CONIC_DEFINE_NAMES(conic_gradient_kind_name, conic_gradient_kind, CONIC_N_GRADIENT_KINDS, "mean", "scale", "rotation",
+                   "opacity", "sh")
 
 int conic_gradient_has_profile(conic_gaussian_profile profile) {
   const oracle_gaussian_rules *rules = conic_oracle_gaussian_rules(profile);

@@ -12,10 +12,8 @@ const char *conic_fate_name(conic_fate fate) {
   return (unsigned)fate < sizeof names / sizeof names[0] ? names[fate] : NULL;
 }
 
-const char *conic_contribution_verdict_name(conic_contribution_verdict verdict) {
-  static const char *const names[CONIC_N_CONTRIBUTION_VERDICTS] = {"visible", "hidden", "clipped", "outside"};
-  return (unsigned)verdict < CONIC_N_CONTRIBUTION_VERDICTS ? names[verdict] : NULL;
-}
+CONIC_DEFINE_NAMES(conic_contribution_verdict_name, conic_contribution_verdict, CONIC_N_CONTRIBUTION_VERDICTS,
+                   "visible", "hidden", "clipped", "outside")
 
 static void project_task(void *data, size_t i_chunk, int i_thread) {
   conic_contributions *c = data;

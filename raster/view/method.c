@@ -1,12 +1,10 @@
 /* The names of methods, kernels and shadings, and which method drew how much of a frame. */
 #include "raster/view/method.h"
 
+#include "core/base/names.h"
 #include "core/splats/kernel.h"
 
-const char *conic_method_name(conic_method method) {
-  static const char *const names[CONIC_N_METHODS] = {"conic", "ray", "affine", "point", "disc", "auto"};
-  return (unsigned)method < CONIC_N_METHODS ? names[method] : NULL;
-}
+CONIC_DEFINE_NAMES(conic_method_name, conic_method, CONIC_N_METHODS, "conic", "ray", "affine", "point", "disc", "auto")
 
 const char *conic_kernel_type_name(conic_kernel_type type) {
 #define WORD_OF_KERNEL(type, word, traits) [type] = word,
@@ -14,10 +12,7 @@ const char *conic_kernel_type_name(conic_kernel_type type) {
   return (unsigned)type < CONIC_N_KERNELS ? names[type] : NULL;
 }
 
-const char *conic_shading_name(conic_shading shading) {
-  static const char *const names[CONIC_N_SHADINGS] = {"none", "lambert", "phong"};
-  return (unsigned)shading < CONIC_N_SHADINGS ? names[shading] : NULL;
-}
+CONIC_DEFINE_NAMES(conic_shading_name, conic_shading, CONIC_N_SHADINGS, "none", "lambert", "phong")
 
 /* Rays are counted one by one. What else is not by the method's own formula is drawn by a variance of the dual conic,
  * or is a segment, which has one of the same kind. */
