@@ -1,7 +1,7 @@
 /* The names of methods, kernels and shadings, and which method drew how much of a frame. */
 #include "raster/view/method.h"
 
-#include "core/base/names.h"
+#include "core/base/base.h"
 #include "core/splats/kernel.h"
 
 CONIC_DEFINE_NAMES(conic_method_name, conic_method, CONIC_N_METHODS, "conic", "ray", "affine", "point", "disc", "auto")
