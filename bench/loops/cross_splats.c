@@ -140,22 +140,23 @@ typedef struct slot {
   int has_methods;              /* differs by the method */
   int has_kernels;              /* differs by the splats' kernel */
   int is_not_timed;             /* a line for the comparison alone */
+  int goes_on; /* the comparison begins where the slot above ended, which is what `before` would make */
 } slot;
 
 static const slot slots[] = {
-    {"project", run_project, {NULL}, check_projected, A_SPLAT, 1, 0, 0},
-    {"project for nearest", run_project_for_nearest, {NULL}, check_projected, A_SPLAT, 1, 0, 1},
-    {"keys", run_keys, {NULL}, NULL, A_RECORD, 0, 0, 0},
-    {"keys of pixels", run_keys_of_pixels, {NULL}, NULL, A_RECORD, 0, 0, 0},
-    {"sort", run_sort, {NULL}, NULL, A_RECORD, 0, 0, 0},
-    {"select", run_select, {NULL}, check_selected, AN_INDEX, 0, 0, 0},
-    {"visibility", run_visibility, {NULL}, check_kept, A_FRAGMENT, 1, 0, 0},
-    {"accumulate", run_accumulate, {run_visibility}, check_sums, A_FRAGMENT, 1, 1, 0},
-    {"nearest", run_nearest, {NULL}, check_nearest, A_FRAGMENT, 1, 0, 0},
-    {"take nearest", run_take_nearest, {run_nearest}, check_sums, A_PIXEL, 0, 1, 0},
-    {"resolve", run_resolve, {run_visibility, run_accumulate}, NULL, A_PIXEL, 0, 0, 0},
-    {"resolve nearest", run_resolve, {run_nearest, run_take_nearest}, NULL, A_PIXEL, 0, 0, 1},
-    {"resolve spoiled", run_resolve, {run_visibility, run_accumulate, spoil_sums}, NULL, A_PIXEL, 0, 0, 1},
+    {"project", run_project, {NULL}, check_projected, A_SPLAT, 1, 0, 0, 0},
+    {"project for nearest", run_project_for_nearest, {NULL}, check_projected, A_SPLAT, 1, 0, 1, 0},
+    {"keys", run_keys, {NULL}, NULL, A_RECORD, 0, 0, 0, 0},
+    {"keys of pixels", run_keys_of_pixels, {NULL}, NULL, A_RECORD, 0, 0, 0, 0},
+    {"sort", run_sort, {NULL}, NULL, A_RECORD, 0, 0, 0, 0},
+    {"select", run_select, {NULL}, check_selected, AN_INDEX, 0, 0, 0, 0},
+    {"visibility", run_visibility, {NULL}, check_kept, A_FRAGMENT, 1, 0, 0, 0},
+    {"accumulate", run_accumulate, {run_visibility}, check_sums, A_FRAGMENT, 1, 1, 0, 1},
+    {"nearest", run_nearest, {NULL}, check_nearest, A_FRAGMENT, 1, 0, 0, 0},
+    {"take nearest", run_take_nearest, {run_nearest}, check_sums, A_PIXEL, 0, 1, 0, 1},
+    {"resolve nearest", run_resolve, {run_nearest, run_take_nearest}, NULL, A_PIXEL, 0, 0, 1, 1},
+    {"resolve", run_resolve, {run_visibility, run_accumulate}, NULL, A_PIXEL, 0, 0, 0, 0},
+    {"resolve spoiled", run_resolve, {run_visibility, run_accumulate, spoil_sums}, NULL, A_PIXEL, 0, 0, 1, 0},
 };
 
 enum { N_SLOTS = sizeof slots / sizeof slots[0] };
@@ -307,13 +308,14 @@ static void count_lists(const conic_band *band) {
   }
 }
 
-static void compare_band(const cross *c, const slot *at, splat_desk **desks, int x, int y) {
+static void compare_band(const cross *c, const slot *at, splat_desk **desks, splat_desk *next, int x, int y) {
   int failures = check_failures;
-  prepare(at, &c->tables[0], desks[0], x, y);
   for (int i = 1; i < c->n_tables; i++)
     copy_band(at, desks[i], desks[0]);
   for (int i = 0; i < c->n_tables; i++) {
     at->run(&c->tables[i], &desks[i]->memory);
+    if (i == 0 && next)
+      copy_band(at, next, desks[0]);
     if (at->check)
       at->check(desks[i]);
     compare_bands(at, desks[0], desks[i]);
@@ -321,7 +323,18 @@ static void compare_band(const cross *c, const slot *at, splat_desk **desks, int
   if (at->run == run_visibility)
     count_lists(&desks[0]->band);
   if (check_failures != failures)
-    fprintf(stderr, "  that was the band at %d,%d\n", x, y);
+    fprintf(stderr, "  that was %s on the band at %d,%d\n", at->name, x, y);
+}
+
+/* The slot, and what goes on from it: `next` holds what plain C has left. */
+static void compare_from(const cross *c, const slot *at, splat_desk **desks, splat_desk *next, int x, int y) {
+  const slot *end = slots + N_SLOTS;
+  prepare(at, &c->tables[0], desks[0], x, y);
+  compare_band(c, at, desks, next, x, y);
+  for (at++; next && at != end && at->goes_on; at++) {
+    copy_band(at - 1, desks[0], next);
+    compare_band(c, at, desks, next, x, y);
+  }
 }
 
 /* The bands of the tile that is timed, or every fifth, which takes in some that the picture's edge cuts. */
@@ -332,7 +345,7 @@ static void compare_all_bands(const cross *c, const slot *at, splat_desk **desks
   for (int y = c->is_bench ? TIMED_BEGIN : 0; y < (c->is_bench ? TIMED_END : height); y += CONIC_BLOCK_EDGE)
     for (int x = c->is_bench ? TIMED_BEGIN : 0; x < (c->is_bench ? TIMED_END : width); x += CONIC_GREATEST_TILE)
       if (c->is_bench || n++ % 5 == 0)
-        compare_band(c, at, desks, x, y);
+        compare_from(c, at, desks, c->is_bench ? NULL : desks[c->n_tables], x, y);
 }
 
 static void clear_arenas(splat_desk *d, int first, int last) {
@@ -393,13 +406,14 @@ enum { STEP = 5 };
 enum { STEP = 1 };
 #endif
 
+/* One a table, and one more. */
 static void open_desks(const cross *c, const fixture *f, unsigned planes, splat_desk **desks) {
-  for (int i = 0; i < c->n_tables; i++)
+  for (int i = 0; i <= c->n_tables; i++)
     desks[i] = open_desk(f, planes);
 }
 
 static void close_desks(const cross *c, splat_desk **desks) {
-  for (int i = 0; i < c->n_tables; i++)
+  for (int i = 0; i <= c->n_tables; i++)
     cross_close(&desks[i]->memory);
 }
 
@@ -407,7 +421,7 @@ static void compare_all(const cross *c, fixture *f) {
   static const unsigned some_planes[] = {ALL_PLANES, 1u << CONIC_PLANE_RGBA,
                                          1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_NORMAL | 1u << CONIC_PLANE_WEIGHT,
                                          1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_ALBEDO};
-  splat_desk *desks[CONIC_N_ISAS];
+  splat_desk *desks[CONIC_N_ISAS + 1];
   uint64_t state = c->seed;
   fixture_camera(f, 90, 86, 70.0); /* no multiple of a block */
   for (int i = 0; i < 4 * CONIC_N_METHODS * CONIC_N_KERNELS; i += STEP) {
@@ -416,7 +430,8 @@ static void compare_all(const cross *c, fixture *f) {
     fill(f, &state, number % 4 == 3 ? 0.1 : 4.0, i % 2 ? 0.02 : 0.0);
     open_desks(c, f, some_planes[number % 2 ? number / 2 % 4 : 0], desks);
     for (int i_slot = 0; i_slot < N_SLOTS; i_slot++)
-      compare_slot(c, number, &slots[i_slot], desks);
+      if (!slots[i_slot].goes_on)
+        compare_slot(c, number, &slots[i_slot], desks);
     close_desks(c, desks);
   }
   printf("%d blocks with all kept that fits, %d with less\n", n_long_lists, n_short_lists);
@@ -454,7 +469,7 @@ static double time_slot(const slot *at, const cross_tables *plain, const cross_t
 
 static void bench_slot(cross *c, const fixture *f, const slot *at) {
   static const char *const unit_names[] = {"splat", "record", "index", "fragment", "pixel"};
-  splat_desk *desks[CONIC_N_ISAS];
+  splat_desk *desks[CONIC_N_ISAS + 1];
   char variant[32];
   double plain = 0.0;
   snprintf(variant, sizeof variant, "%s %s", at->has_methods ? conic_method_name(f->options.method) : "-",
