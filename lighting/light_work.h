@@ -14,13 +14,14 @@ typedef struct conic_edge_spread {
   const conic_image *image;
   const conic_receivers *receivers;
   conic_camera_rays rays;
-  float epsilon;       /* the casters' */
-  int samples;         /* N × N of the picture's pixel */
-  size_t edge_px;      /* how far splats may stick out */
-  unsigned char *kind; /* of each pixel */
-  float *own;          /* of each pixel that is a receiver: what it received */
-  float *filled;       /* of each pixel: what it gets from that */
-  float otherwise;     /* for pixels that get nothing */
+  float epsilon;           /* the casters' */
+  int samples;             /* N × N of the picture's pixel */
+  size_t edge_px;          /* how far splats may stick out */
+  unsigned char *kind;     /* of each pixel */
+  unsigned char *is_alone; /* of each pixel: neither it nor one about it is a receiver */
+  float *own;              /* of each pixel that is a receiver: what it received */
+  float *filled;           /* of each pixel: what it gets from that */
+  float otherwise;         /* for pixels that get nothing */
 } conic_edge_spread;
 
 /* Finds which pixels of the picture, which has Z and N, are at edges. Keeps references to the arguments. Errors:
@@ -76,12 +77,13 @@ static inline int conic_light_shade(const conic_light_work *l, const conic_finis
   size_t pixel = conic_light_pixel(l, x, y);
   const float *albedo = (const float *)l->image->planes[CONIC_PLANE_ALBEDO] + 3 * pixel;
   const float *normal = (const float *)l->image->planes[CONIC_PLANE_NORMAL] + 3 * pixel;
-  float coverage = conic_light_coverage(l, pixel), viewer[3], own[3];
+  float coverage = conic_light_coverage(l, pixel), viewer[3] = {0.0f, 0.0f, 0.0f}, own[3];
   for (int c = 0; c < 3 && coverage > 0.0f; c++)
     own[c] = albedo[c] / coverage;
   if (!(coverage > 0.0f))
     return 0;
-  conic_pixel_viewer(&l->spread.rays, x, y, viewer);
+  if (finish->lights->n_lights > 0) /* what is from all around looks alike from everywhere */
+    conic_pixel_viewer(&l->spread.rays, x, y, viewer);
   conic_shade(finish, own, normal, normal, viewer, shaded);
   return 1;
 }
