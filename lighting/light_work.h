@@ -30,11 +30,29 @@ conic_status conic_edge_spread_init(conic_context *context, const conic_camera *
                                     const conic_receivers *receivers, double epsilon, int samples,
                                     conic_edge_spread *spread);
 
-/* Fills `filled` from what the receivers received, each at least 0; `otherwise` for pixels without receivers at or
- * around them. */
+/* Fills `filled` from what the receivers received; `otherwise` for pixels without receivers at or around them. */
 void conic_edge_spread_fill(conic_edge_spread *spread, const float *of_receivers, float otherwise);
 
 void conic_edge_spread_release(conic_edge_spread *spread);
+
+/* What a sky sheds on a surface by its normal, without one direction's share of it: of three colours q0 + q1·n +
+ * n·q2·n. Both are by a polynomial in place of the cosine that ends at 0. Over all directions the mean is 0. Added to a
+ * sample's light from its direction, it leaves only what is hidden to chance. */
+typedef struct conic_sky_rest {
+  float q0[3], q1[3][3], q2[3][3][3];
+} conic_sky_rest;
+
+/* Without direction i of the sequence. */
+void conic_sky_rest_without(const conic_sky *sky, uint64_t i, conic_sky_rest *rest);
+
+static inline float conic_sky_rest_at(const conic_sky_rest *rest, size_t c, const float n[3]) {
+  float sum = rest->q0[c];
+  for (int i = 0; i < 3; i++) {
+    const float *q = rest->q2[c][i];
+    sum += (rest->q1[c][i] + ((q[0] * n[0] + q[1] * n[1]) + q[2] * n[2])) * n[i];
+  }
+  return sum;
+}
 
 typedef struct conic_light_work {
   conic_context *context;
