@@ -60,16 +60,32 @@ static void find_receivers_at_edges(void *data, size_t y, int i_thread) {
       s->kind[pixel_at(s, x, y)] = RECEIVER_AT_EDGE;
 }
 
+static int has_receiver_about(const conic_edge_spread *s, size_t x, size_t y) {
+  pixel_range range = pixels_about(s, x, y);
+  for (size_t j = range.top; j < range.bottom; j++)
+    for (size_t i = range.left; i < range.right; i++)
+      if (s->kind[pixel_at(s, i, j)] != NO_RECEIVER)
+        return 1;
+  return 0;
+}
+
+static void find_alone(void *data, size_t y, int i_thread) {
+  const conic_edge_spread *s = data;
+  (void)i_thread;
+  for (size_t x = 0; x < (size_t)s->image->width; x++)
+    s->is_alone[pixel_at(s, x, y)] = s->kind[pixel_at(s, x, y)] == NO_RECEIVER && !has_receiver_about(s, x, y);
+}
+
 static void name_receivers(conic_edge_spread *s) {
   memset(s->kind, NO_RECEIVER, conic_image_pixels(s->image));
   for (size_t i = 0; i < s->receivers->count; i++)
     s->kind[s->receivers->pixel[i]] = RECEIVER;
 }
 
-/* The mean over the pixels around one that are of a kind, with depths from nearest to deepest; below 0 where there are
- * none. */
-static float mean_about(const conic_edge_spread *s, size_t x, size_t y, unsigned char kind, float nearest,
-                        float deepest) {
+/* The mean over the pixels around one that are of a kind, with depths from nearest to deepest; returns 0 where there
+ * are none. */
+static int mean_about(const conic_edge_spread *s, size_t x, size_t y, unsigned char kind, float nearest, float deepest,
+                      float *mean) {
   const float *z = s->image->planes[CONIC_PLANE_Z];
   pixel_range range = pixels_about(s, x, y);
   float sum = 0.0f, n = 0.0f;
@@ -81,24 +97,27 @@ static float mean_about(const conic_edge_spread *s, size_t x, size_t y, unsigned
       sum += s->own[pixel];
       n += 1.0f;
     }
-  return n > 0.0f ? sum / n : -1.0f;
+  *mean = sum / n;
+  return n > 0.0f;
 }
 
 /* What a pixel gets: a receiver its own value; a receiver at an edge the mean of its surface's receivers around it; a
  * pixel that is no receiver, but at the border of what is drawn, the mean of the receivers around it. */
 static float spread_at(const conic_edge_spread *s, size_t x, size_t y) {
   size_t pixel = pixel_at(s, x, y);
+  float mean;
   if (s->kind[pixel] == RECEIVER)
     return s->own[pixel];
+  if (s->is_alone[pixel])
+    return s->otherwise;
   if (s->kind[pixel] == RECEIVER_AT_EDGE) {
     float z = ((const float *)s->image->planes[CONIC_PLANE_Z])[pixel], step = depth_of_step(s, x, y);
-    float mean = mean_about(s, x, y, RECEIVER, z - step, z + step);
-    return mean >= 0.0f ? mean : s->own[pixel];
+    return mean_about(s, x, y, RECEIVER, z - step, z + step, &mean) ? mean : s->own[pixel];
   }
-  float mean = mean_about(s, x, y, RECEIVER, 0.0f, HUGE_VALF);
-  if (mean < 0.0f)
-    mean = mean_about(s, x, y, RECEIVER_AT_EDGE, 0.0f, HUGE_VALF);
-  return mean >= 0.0f ? mean : s->otherwise;
+  return mean_about(s, x, y, RECEIVER, 0.0f, HUGE_VALF, &mean) ||
+                 mean_about(s, x, y, RECEIVER_AT_EDGE, 0.0f, HUGE_VALF, &mean)
+             ? mean
+             : s->otherwise;
 }
 
 static void fill_row(void *data, size_t y, int i_thread) {
@@ -129,12 +148,14 @@ conic_status conic_edge_spread_init(conic_context *context, const conic_camera *
   conic_camera_rays_init(camera, &s->rays);
   s->own = conic_memory_allocate(context, n, sizeof *s->own);
   s->filled = conic_memory_allocate(context, n, sizeof *s->filled);
-  s->kind = conic_memory_allocate(context, n, 1);
+  s->kind = conic_memory_allocate(context, n, 2);
   if (!s->own || !s->filled || !s->kind)
     return CONIC_ERROR_MEMORY;
+  s->is_alone = s->kind + n;
   name_receivers(s);
   if (s->epsilon > 0.0f || samples > 1)
     conic_parallel_for(context, (size_t)image->height, find_receivers_at_edges, s);
+  conic_parallel_for(context, (size_t)image->height, find_alone, s);
   return CONIC_OK;
 }
 

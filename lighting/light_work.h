@@ -14,13 +14,14 @@ typedef struct conic_edge_spread {
   const conic_image *image;
   const conic_receivers *receivers;
   conic_camera_rays rays;
-  float epsilon;       /* the casters' */
-  int samples;         /* N × N of the picture's pixel */
-  size_t edge_px;      /* how far splats may stick out */
-  unsigned char *kind; /* of each pixel */
-  float *own;          /* of each pixel that is a receiver: what it received */
-  float *filled;       /* of each pixel: what it gets from that */
-  float otherwise;     /* for pixels that get nothing */
+  float epsilon;           /* the casters' */
+  int samples;             /* N × N of the picture's pixel */
+  size_t edge_px;          /* how far splats may stick out */
+  unsigned char *kind;     /* of each pixel */
+  unsigned char *is_alone; /* of each pixel: neither it nor one about it is a receiver */
+  float *own;              /* of each pixel that is a receiver: what it received */
+  float *filled;           /* of each pixel: what it gets from that */
+  float otherwise;         /* for pixels that get nothing */
 } conic_edge_spread;
 
 /* Finds which pixels of the picture, which has Z and N, are at edges. Keeps references to the arguments. Errors:
@@ -29,11 +30,29 @@ conic_status conic_edge_spread_init(conic_context *context, const conic_camera *
                                     const conic_receivers *receivers, double epsilon, int samples,
                                     conic_edge_spread *spread);
 
-/* Fills `filled` from what the receivers received, each at least 0; `otherwise` for pixels without receivers at or
- * around them. */
+/* Fills `filled` from what the receivers received; `otherwise` for pixels without receivers at or around them. */
 void conic_edge_spread_fill(conic_edge_spread *spread, const float *of_receivers, float otherwise);
 
 void conic_edge_spread_release(conic_edge_spread *spread);
+
+/* What a sky sheds on a surface by its normal, without one direction's share of it: of three colours q0 + q1·n +
+ * n·q2·n. Both are by a polynomial in place of the cosine that ends at 0. Over all directions the mean is 0. Added to a
+ * sample's light from its direction, it leaves only what is hidden to chance. */
+typedef struct conic_sky_rest {
+  float q0[3], q1[3][3], q2[3][3][3];
+} conic_sky_rest;
+
+/* Without direction i of the sequence. */
+void conic_sky_rest_without(const conic_sky *sky, uint64_t i, conic_sky_rest *rest);
+
+static inline float conic_sky_rest_at(const conic_sky_rest *rest, size_t c, const float n[3]) {
+  float sum = rest->q0[c];
+  for (int i = 0; i < 3; i++) {
+    const float *q = rest->q2[c][i];
+    sum += (rest->q1[c][i] + ((q[0] * n[0] + q[1] * n[1]) + q[2] * n[2])) * n[i];
+  }
+  return sum;
+}
 
 typedef struct conic_light_work {
   conic_context *context;
@@ -76,12 +95,13 @@ static inline int conic_light_shade(const conic_light_work *l, const conic_finis
   size_t pixel = conic_light_pixel(l, x, y);
   const float *albedo = (const float *)l->image->planes[CONIC_PLANE_ALBEDO] + 3 * pixel;
   const float *normal = (const float *)l->image->planes[CONIC_PLANE_NORMAL] + 3 * pixel;
-  float coverage = conic_light_coverage(l, pixel), viewer[3], own[3];
+  float coverage = conic_light_coverage(l, pixel), viewer[3] = {0.0f, 0.0f, 0.0f}, own[3];
   for (int c = 0; c < 3 && coverage > 0.0f; c++)
     own[c] = albedo[c] / coverage;
   if (!(coverage > 0.0f))
     return 0;
-  conic_pixel_viewer(&l->spread.rays, x, y, viewer);
+  if (finish->lights->n_lights > 0) /* what is from all around looks alike from everywhere */
+    conic_pixel_viewer(&l->spread.rays, x, y, viewer);
   conic_shade(finish, own, normal, normal, viewer, shaded);
   return 1;
 }

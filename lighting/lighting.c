@@ -52,7 +52,8 @@ static void hide_lights(conic_light_work *l, const conic_finish_lights *lights) 
 }
 
 /* Takes the hidden part of what all lights make of a pixel. It multiplies by a part, and does not subtract a
- * difference: where normals cancel, the picture is darker than its planes tell (conic_shade). */
+ * difference: where normals cancel, the picture is darker than its planes tell (conic_shade). In one sample, a
+ * direction's hidden light may be more than the whole; the mean of all is not. */
 static void take_row(void *data, size_t y, int i_thread) {
   const conic_light_work *l = data;
   float shaded[3];
@@ -62,8 +63,10 @@ static void take_row(void *data, size_t y, int i_thread) {
     const float *hidden = l->hidden + 3 * pixel;
     float *rgba = (float *)l->image->planes[CONIC_PLANE_RGBA] + 4 * pixel;
     if ((hidden[0] > 0.0f || hidden[1] > 0.0f || hidden[2] > 0.0f) && conic_light_shade(l, &l->finish, x, y, shaded))
-      for (int c = 0; c < 3; c++)
-        rgba[c] *= hidden[c] < shaded[c] ? 1.0f - hidden[c] / shaded[c] : shaded[c] > 0.0f ? 0.0f : 1.0f;
+      for (int c = 0; c < 3; c++) {
+        int is_left = l->options->is_sample ? shaded[c] > 0.0f : hidden[c] < shaded[c];
+        rgba[c] *= is_left ? 1.0f - hidden[c] / shaded[c] : shaded[c] > 0.0f ? 0.0f : 1.0f;
+      }
   }
 }
 
@@ -124,11 +127,18 @@ static void light_of_sky(const void *cookie, const double direction[3], double l
 static void reflect_sky(conic_light_work *l, size_t c) {
   const conic_sky_sums *sums = &l->sums;
   float n = (float)l->options->n_directions, white = 4.0f; /* of each direction's light (conic_sky_direction) */
+  int is_sample = l->options->is_sample != 0;
+  float *const *normal = l->receivers.normal;
+  conic_sky_rest rest;
+  if (is_sample && !sums->takes_hidden)
+    conic_sky_rest_without(l->options->sky, l->options->first_direction, &rest);
   for (size_t i = 0; i < l->receivers.count; i++) {
-    float whole = sums->takes_hidden ? white * sums->facing[i] : n;
+    float whole = sums->takes_hidden && !is_sample ? white * sums->facing[i] : n;
     l->visible[i] = whole > 0.0f ? sums->color[c][i] / whole : 0.0f;
+    if (is_sample && !sums->takes_hidden)
+      l->visible[i] += conic_sky_rest_at(&rest, c, (const float[3]){normal[0][i], normal[1][i], normal[2][i]});
   }
-  conic_edge_spread_fill(&l->spread, l->visible, 1.0f);
+  conic_edge_spread_fill(&l->spread, l->visible, is_sample && sums->takes_hidden ? 0.0f : 1.0f);
 }
 
 /* Hides the part of the lights' sky and ground that does not arrive. */
@@ -154,18 +164,12 @@ static void add_sky(conic_light_work *l) {
   }
 }
 
-/* Hides all of the lights' sky and ground, so that the arriving light can replace it. */
-static void hide_whole_sky(conic_light_work *l) {
-  l->one = l->lights;
-  l->one.n_lights = 0;
-  memset(l->spread.filled, 0, conic_image_pixels(l->image) * sizeof *l->spread.filled);
-  hide_lights(l, &l->one);
-}
-
 /* The arriving part: of a sample's one direction, its share of the mean. */
 static float arriving_part(const conic_light_work *l, size_t i) {
-  float part = 4.0f * l->sums.visible[i] / (float)l->options->n_directions;
-  return l->options->is_sample ? part : conic_sky_sums_share(&l->sums, i);
+  const conic_sky_sums *sums = &l->sums;
+  if (!l->options->is_sample)
+    return conic_sky_sums_share(sums, i);
+  return sums->takes_hidden ? 1.0f - 4.0f * (sums->facing[i] - sums->visible[i]) : 4.0f * sums->visible[i];
 }
 
 static conic_status gather_sky(conic_light_work *l) {
@@ -176,9 +180,7 @@ static conic_status gather_sky(conic_light_work *l) {
   conic_status status = conic_map_room_agree(&l->room, l->sums_block ? CONIC_OK : CONIC_ERROR_MEMORY);
   if (status != CONIC_OK)
     return status;
-  l->sums = (conic_sky_sums){.facing = l->sums_block,
-                             .visible = l->sums_block + n,
-                             .takes_hidden = !l->options->sky && !l->options->is_sample};
+  l->sums = (conic_sky_sums){.facing = l->sums_block, .visible = l->sums_block + n, .takes_hidden = !l->options->sky};
   for (size_t c = 0; c < 3 && has_colors; c++)
     l->sums.color[c] = l->sums_block + (2 + c) * n;
   status = conic_sky_sums_add(&l->room, l->options, l->options->sky ? NULL : light_of_sky, &l->lights, &l->sums);
@@ -186,8 +188,6 @@ static conic_status gather_sky(conic_light_work *l) {
     return status;
   if (has_colors && l->sums.takes_hidden)
     hide_sky(l);
-  else if (has_colors && !l->options->sky)
-    hide_whole_sky(l);
   for (size_t i = 0; i < n; i++)
     l->visible[i] = arriving_part(l, i);
   conic_edge_spread_fill(&l->spread, l->visible, 1.0f);

@@ -11,17 +11,19 @@
 #include "core/base/vectors.h"
 #include "core/image/framing.h"
 #include "core/image/image_common.h"
+#include "lighting/light_work.h"
 
 /* The sky's power as running sums: over the rows, and in each row over its pixels, divided by the whole. A pixel's
  * power is its greatest colour times its solid angle. */
 struct conic_sky {
   conic_context *context;
   int width, height;
-  double rows[3][3]; /* right, down and forward in the world */
-  double whole;      /* Σ power of all pixels, over 4π·pixels: in units of a white sky's power */
-  double *row_sums;  /* height + 1, from 0 to 1 */
-  float *pixel_sums; /* (width + 1) a row, from 0 to 1 */
-  float *color;      /* 3 a pixel */
+  double rows[3][3];       /* right, down and forward in the world */
+  double whole;            /* Σ power of all pixels, over 4π·pixels: in units of a white sky's power */
+  double *row_sums;        /* height + 1, from 0 to 1 */
+  float *pixel_sums;       /* (width + 1) a row, from 0 to 1 */
+  float *color;            /* 3 a pixel */
+  double moments[3][4][4]; /* of each colour: the mean over all directions d of light · e_i·e_j, with e = (d, 1) */
 };
 
 static double power_of(const float *color) {
@@ -69,6 +71,55 @@ static void sum_up_sky(conic_sky *sky) {
   sky->whole = whole;
 }
 
+/* A row's light, and the same times cosine and sine of the angle and of twice the angle, each averaged over its pixel.
+ */
+static void sum_up_row(const conic_sky *sky, int y, const double *cosine_sine, double sums[3][5]) {
+  const double half = CONIC_PI / sky->width, once = conic_sin(half) / half, twice = once * conic_cos(half);
+  memset(sums, 0, 3 * sizeof *sums);
+  for (int x = 0; x < sky->width; x++) {
+    const float *color = sky->color + 3 * ((size_t)y * (size_t)sky->width + (size_t)x);
+    double u = cosine_sine[2 * x], v = cosine_sine[2 * x + 1];
+    const double parts[5] = {1.0, once * u, once * v, twice * (u * u - v * v), twice * (2.0 * u * v)};
+    for (int c = 0; c < 3; c++)
+      for (int k = 0; k < 5; k++)
+        sums[c][k] += parts[k] * (double)color[c];
+  }
+}
+
+/* The moments of a row, in the order of set_direction. All means over the heights z from bottom to top are exact. */
+static void add_row_moments(conic_sky *sky, int y, const double *cosine_sine) {
+  double from = CONIC_PI * y / sky->height, to = CONIC_PI * (y + 1) / sky->height, sums[3][5];
+  double top = conic_cos(from), bottom = conic_cos(to), a = conic_sin(from), b = conic_sin(to), span = top - bottom;
+  double z = 0.5 * (top + bottom), zz = (top * top + top * bottom + bottom * bottom) / 3.0;
+  double around = 0.5 * ((to - from) + (a * top - b * bottom)) / span; /* of √(1 − z²) */
+  double slanted = (b * b * b - a * a * a) / (3.0 * span);             /* of z·√(1 − z²) */
+  sum_up_row(sky, y, cosine_sine, sums);
+  for (int c = 0; c < 3; c++) {
+    const double *s = sums[c], half = 0.5 * (1.0 - zz);
+    const double row[4][4] = {{half * (s[0] + s[3]), half * s[4], slanted * s[1], around * s[1]},
+                              {half * s[4], half * (s[0] - s[3]), slanted * s[2], around * s[2]},
+                              {slanted * s[1], slanted * s[2], zz * s[0], z * s[0]},
+                              {around * s[1], around * s[2], z * s[0], s[0]}};
+    for (int i = 0; i < 16; i++)
+      sky->moments[c][i / 4][i % 4] += 4.0 * row_area(sky, y) / sky->width * row[i / 4][i % 4];
+  }
+}
+
+static conic_status sum_up_moments(conic_sky *sky) {
+  double *cosine_sine = conic_memory_allocate(sky->context, (size_t)sky->width, 2 * sizeof *cosine_sine);
+  if (!cosine_sine)
+    return CONIC_ERROR_MEMORY;
+  for (int x = 0; x < sky->width; x++) {
+    double angle = 2.0 * CONIC_PI * ((x + 0.5) / sky->width - 0.5);
+    cosine_sine[2 * x] = conic_cos(angle);
+    cosine_sine[2 * x + 1] = conic_sin(angle);
+  }
+  for (int y = 0; y < sky->height; y++)
+    add_row_moments(sky, y, cosine_sine);
+  conic_memory_release(sky->context, cosine_sine);
+  return CONIC_OK;
+}
+
 static conic_status fill_sky(const char *who, const conic_image *image, const double up[3], conic_sky *sky) {
   conic_framing framing, own;
   size_t width = (size_t)image->width, height = (size_t)image->height;
@@ -89,7 +140,7 @@ static conic_status fill_sky(const char *who, const conic_image *image, const do
   if (!take_sky_colors(image, sky))
     return conic_fail(sky->context, CONIC_ERROR_INPUT, "%s: a colour is not finite, or above 1e12", who);
   sum_up_sky(sky);
-  return sky->whole > 0.0 ? CONIC_OK
+  return sky->whole > 0.0 ? sum_up_moments(sky)
                           : conic_fail(sky->context, CONIC_ERROR_INPUT, "%s: no light: no colour is above 0", who);
 }
 
@@ -191,5 +242,30 @@ void conic_sky_direction(const conic_sky *sky, uint64_t i, double direction[3], 
     direction[axis] =
         (from_sky[1] * sky->rows[0][axis] - from_sky[2] * sky->rows[1][axis]) + from_sky[0] * sky->rows[2][axis];
     light[axis] = 4.0 * sky->whole * (double)color[axis] / power_of(color);
+  }
+}
+
+/* max(0, x) is about 3/32 + x/2 + 15/32·x²: the first three of its Legendre polynomials. */
+void conic_sky_rest_without(const conic_sky *sky, uint64_t i_direction, conic_sky_rest *rest) {
+  double direction[3], light[3], axes[3][3];
+  conic_sky_direction(sky, i_direction, direction, light);
+  for (int k = 0; k < 3; k++) { /* of the moments, in the world */
+    axes[0][k] = sky->rows[2][k];
+    axes[1][k] = sky->rows[0][k];
+    axes[2][k] = -sky->rows[1][k];
+  }
+  for (int c = 0; c < 3; c++) {
+    const double(*m)[4] = sky->moments[c];
+    rest->q0[c] = (float)(3.0 / 32.0 * (m[3][3] - light[c]));
+    for (int i = 0; i < 3; i++) {
+      double first = axes[0][i] * m[0][3] + axes[1][i] * m[1][3] + axes[2][i] * m[2][3];
+      rest->q1[c][i] = (float)(0.5 * (first - light[c] * direction[i]));
+      for (int j = 0; j < 3; j++) {
+        double second = -light[c] * direction[i] * direction[j];
+        for (int k = 0; k < 9; k++)
+          second += axes[k / 3][i] * m[k / 3][k % 3] * axes[k % 3][j];
+        rest->q2[c][i][j] = (float)(15.0 / 32.0 * second);
+      }
+    }
   }
 }

@@ -56,7 +56,7 @@ typedef struct conic_raster_frame {
 conic_status conic_raster_frame_begin(conic_raster_frame *frame, const conic_whole_drawing *drawing,
                                       const conic_camera *camera, const conic_render_options *options);
 
-/* The pass of hiding is of the plane Z alone; triangles alone hide by what they are. Errors: ARGUMENT. */
+/* The pass of hiding is of the plane Z alone. Errors: ARGUMENT. */
 conic_status conic_raster_frame_take_passes(const conic_raster_frame *frame, unsigned planes,
                                             conic_render_options *options);
 

@@ -113,7 +113,8 @@ conic_status conic_raster_frame_take_passes(const conic_raster_frame *f, unsigne
     return CONIC_OK;
   if (planes != 1u << CONIC_PLANE_Z)
     return conic_fail(f->renderer->context, CONIC_ERROR_ARGUMENT, "render: the pass of hiding has the plane Z alone");
-  options->passes = f->splats->count ? CONIC_PASS_OF_HIDING : 1;
+  if (!f->splats->count && f->renderer->backend) /* a device hides by splats alone */
+    options->passes = 1;
   return CONIC_OK;
 }
 

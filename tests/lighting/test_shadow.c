@@ -1,6 +1,7 @@
 /* Shadows, light by samples, at points and from skies, and what must not change them. */
 #include "core/base/team_runs.h"
 #include "core/lanes/instruction_sets.h"
+#include "lighting/light_work.h"
 #include "tests/support/light_fixture.h"
 #include "tests/support/thread_team.h"
 
@@ -413,6 +414,36 @@ static void sky_is_gathered(conic_context *context) {
   conic_image_release(context, &image);
 }
 
+/* A picture of few pixels, whose means over a pixel are far from what its middle has. */
+static void rest_of_a_sky_has_no_mean(conic_context *context) {
+  enum { WIDTH = 3, HEIGHT = 4, N = 1 << 17, N_NORMALS = 12 };
+  const double up[3] = {0.3, 1.0, -0.4};
+  double sums[N_NORMALS][3] = {{0.0}}, square = 0.0;
+  conic_image image;
+  conic_sky *sky;
+  CHECK_OK(conic_image_allocate(context, WIDTH, HEIGHT, 1u << CONIC_PLANE_RGBA, &image));
+  for (int i = 0; i < 4 * WIDTH * HEIGHT; i++)
+    ((float *)image.planes[CONIC_PLANE_RGBA])[i] = (float)(i * i % 11);
+  CHECK_OK(conic_sky_create(context, &image, up, &sky));
+  for (uint64_t i = 0; i < N; i++) {
+    conic_sky_rest rest;
+    conic_sky_rest_without(sky, i, &rest);
+    for (int k = 0; k < N_NORMALS; k++) {
+      const float normal[3] = {sinf(1.0f + (float)k), cosf(2.0f * (float)k), sinf(3.0f * (float)k)};
+      for (size_t c = 0; c < 3; c++) {
+        double value = (double)conic_sky_rest_at(&rest, c, normal);
+        sums[k][c] += value / N;
+        square += value * value / N;
+      }
+    }
+  }
+  CHECK(square > 100.0);
+  for (int k = 0; k < 3 * N_NORMALS; k++)
+    CHECK_NEAR(sums[k / 3][k % 3], 0.0, 1e-3);
+  conic_sky_destroy(sky);
+  conic_image_release(context, &image);
+}
+
 /* --- what is refused --- */
 
 static conic_status refuse_map(void *cookie, const conic_camera *camera, double near_z, conic_image *depth) {
@@ -450,6 +481,7 @@ int main(void) {
   conic_context *context = check_context(0);
   wrong_arguments_are_refused(context);
   sky_is_gathered(context);
+  rest_of_a_sky_has_no_mean(context);
   shadow_takes_the_light_that_is_hidden(context);
   mean_of_samples_is_the_picture(context);
   cube_leaks_nothing(context);
