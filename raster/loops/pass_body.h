@@ -141,7 +141,7 @@ CONIC_INLINE lanes hiding_iz(pass *p, const passing *splat, lanes iz, uint32_t p
 CONIC_INLINE unsigned pass_part(lanes hides, const fragments *f, conic_kept *kept, size_t place, size_t at,
                                 splat_kind kind) {
   lanes_store(kept->threshold + at, lanes_max(lanes_keep(f->covered, hides), lanes_load(kept->threshold + at)));
-  lanes_store(kept->fragments[place].q + at, kind == SPLAT_SMOOTH || kind == SPLAT_PROFILED ? f->scale : f->q);
+  lanes_store(kept->fragments[place].q + at, kind == SPLAT_PROFILED ? f->scale : f->q);
   lanes_store(kept->fragments[place].seen_iz + at,
               lanes_select(f->covered, lanes_max(f->plane_iz, f->iz), lanes_of(-1.0f)));
   if (kind >= SPLAT_SPECIAL)
@@ -170,13 +170,11 @@ CONIC_INLINE void pass_block(pass *p, const sources *from, const sites *s, const
 
 /* One splat in the blocks that its word names. Two are done in any case, the second perhaps beside the band: most small
  * splats have one or two, and which, no branch can foresee. */
-CONIC_INLINE void pass_splat(pass *p, const sources *from, const sites *s, size_t i, splat_kind kind,
-                             const smooth_part *smooth) {
+CONIC_INLINE void pass_splat(pass *p, const sources *from, const sites *s, size_t i, splat_kind kind) {
   const uint32_t i_footprint = from->indices[i], word = from->words[i];
   const uint32_t first = conic_word_first(word), last = conic_word_last(word);
   const conic_footprint *footprint = &from->footprints[i_footprint];
   passing splat = {footprint, i, i_footprint, lanes_of(footprint->nearness), begin_splat(from, footprint, s->y, kind)};
-  splat.rows.smooth = smooth;
   pass_block(p, from, s, &splat, first, kind);
   pass_block(p, from, s, &splat, last > first ? first + 1 : CONIC_NO_BLOCK, kind);
   for (uint32_t block = first + 2; block <= last; block++)
@@ -277,38 +275,19 @@ CONIC_INLINE void end_pass(const pass *p, int has_special, conic_band *band) {
   band->n_fragments += p->n_fragments;
 }
 
-CONIC_OUTLINE void visibility_profiled(conic_band *band) {
-  const sources from = sources_of(band);
-  pass p;
-  sites s;
-  smooth_group group;
-  find_sites(band, &s);
-  begin_pass(band, &p);
-  for (size_t i = 0; i < from.n; i++) {
-    const size_t lane = i % CONIC_LANES;
-    prefetch_splat(&from, i);
-    if (lane == 0)
-      find_smooth(&from, i, &group);
-    if (__builtin_expect(group.is_smooth >> lane & 1, 1))
-      pass_splat(&p, &from, &s, i, SPLAT_SMOOTH, &group.parts[lane]);
-    else
-      pass_splat(&p, &from, &s, i, SPLAT_PROFILED, NULL);
-  }
-  end_pass(&p, 0, band);
+/* Rays and what has clip lines, of kernels that have a profile. Ellipses get theirs once it is known what is seen. */
+static __attribute__((noinline)) void pass_profiled(pass *p, const sources *from, const sites *s, size_t i) {
+  pass_splat(p, from, s, i, SPLAT_PROFILED);
 }
 
 static void visibility(conic_band *band) {
   enum { LOOK_EVERY = 32 };
   const sources from = sources_of(band);
-  const int is_crowd = from.n > CONIC_KEPT_SPLATS;
+  const int is_profiled = band->view->profile.table != NULL, is_crowd = from.n > CONIC_KEPT_SPLATS && !is_profiled;
   crowd c = {0, 0.0f, 0, 0.0f};
   pass p;
   int has_special = 0;
   sites s;
-  if (band->view->profile.table) {
-    visibility_profiled(band);
-    return;
-  }
   find_sites(band, &s);
   begin_pass(band, &p);
   for (size_t i = 0; i < from.n; i++) {
@@ -320,21 +299,25 @@ static void visibility(conic_band *band) {
     /* Neither is 0 or below: in one comparison. */
     const float lesser = footprint->s3 < footprint->nearness ? footprint->s3 : footprint->nearness;
     if (__builtin_expect(lesser > 0.0f, 1)) {
-      pass_splat(&p, &from, &s, i, SPLAT_USUAL, NULL);
+      pass_splat(&p, &from, &s, i, SPLAT_USUAL);
       continue;
     }
     if (is_ellipse)
-      pass_splat(&p, &from, &s, i, SPLAT_WIDE, NULL);
+      pass_splat(&p, &from, &s, i, SPLAT_WIDE);
     else {
       prefetch_ray(&from, from.indices[i + 12 < from.n ? i + 12 : i]);
-      if (is_crowd && is_plain_ray(footprint))
+      if (is_profiled)
+        pass_profiled(&p, &from, &s, i);
+      else if (is_crowd && is_plain_ray(footprint))
         pass_ray_in_crowd(&p, &from, &s, band, &c, i);
       else
-        pass_splat(&p, &from, &s, i, SPLAT_SPECIAL, NULL);
+        pass_splat(&p, &from, &s, i, SPLAT_SPECIAL);
       has_special = 1;
     }
   }
   end_pass(&p, has_special, band);
+  if (is_profiled)
+    weigh_ellipses(band, &from, &s);
 }
 
 /* The sums of one part, in registers. */

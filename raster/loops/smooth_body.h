@@ -7,13 +7,13 @@
 #include "raster/loops/coverage_lanes.h"
 
 typedef struct smooth_group {
-  unsigned is_smooth; /* by bits: narrow ellipses without clip lines, of smooth shares */
+  unsigned is_smooth; /* by bits */
   smooth_part parts[CONIC_LANES];
 } smooth_group;
 
 /* What of the group is found in lanes. */
 typedef struct smooth_aims {
-  float s1[CONIC_LANES], s2[CONIC_LANES], s3[CONIC_LANES], nearness[CONIC_LANES];
+  float s1[CONIC_LANES], s2[CONIC_LANES], s3[CONIC_LANES];
   float n_xx[CONIC_LANES], n_xy[CONIC_LANES], n_yy[CONIC_LANES];
   uint32_t level[2][CONIC_LANES];
   float part[2][CONIC_LANES];
@@ -40,24 +40,21 @@ CONIC_INLINE unsigned find_smooth_aims(float h, smooth_aims *aims) {
   lanes_store(aims->n_yy, scale * (yy - low));
   put_smooth_level(low, aims->level[0], aims->part[0]);
   put_smooth_level(high, aims->level[1], aims->part[1]);
-  lanes usual = lanes_min(s3, lanes_load(aims->nearness));
-  return lanes_bits(lanes_less(lanes_of(0.0f), usual) &
-                    lanes_at_least(low, lanes_of(1.0f / (float)CONIC_PROFILE_SMOOTH_LEVELS)));
+  return lanes_bits(lanes_at_least(low, lanes_of(1.0f / (float)CONIC_PROFILE_SMOOTH_LEVELS)));
 }
 
-/* Of the band's splats from the first on. */
-CONIC_INLINE void find_smooth(const sources *from, size_t first, smooth_group *group) {
+/* So many ellipses of a block, in the order of their places. */
+CONIC_INLINE void find_smooth(const sources *from, const conic_kept *kept, const uint32_t *places, size_t n,
+                              smooth_group *group) {
   smooth_aims aims;
   for (size_t i = 0; i < CONIC_LANES; i++) {
-    const size_t last = from->n - 1;
-    const conic_footprint *footprint = &from->footprints[from->indices[first + i < last ? first + i : last]];
+    const conic_footprint *footprint = &from->footprints[kept->footprint[places[i < n ? i : n - 1]]];
     aims.s1[i] = footprint->s1;
     aims.s2[i] = footprint->s2;
     aims.s3[i] = footprint->s3;
-    aims.nearness[i] = footprint->nearness;
   }
   group->is_smooth = find_smooth_aims(from->view->prefilter, &aims);
-  for (size_t i = 0; i < CONIC_LANES; i++) {
+  for (size_t i = 0; i < n; i++) {
     smooth_part *part = &group->parts[i];
     if (!(group->is_smooth >> i & 1))
       continue;
@@ -66,6 +63,57 @@ CONIC_INLINE void find_smooth(const sources *from, size_t first, smooth_group *g
     part->n_yy = aims.n_yy[i];
     cut_smooth(&from->view->profile, (int)aims.level[0][i], (int)aims.level[1][i], aims.part[0][i], aims.part[1][i],
                part);
+  }
+}
+
+/* The places of the ellipses that a block shows; returns how many there are. */
+CONIC_INLINE size_t find_seen(const sources *from, const conic_kept *kept, size_t n_kept, uint32_t *places) {
+  size_t n = 0;
+  for (size_t i = 0; i < n_kept; i++) {
+    unsigned seen = 0;
+    for (size_t at = 0; at < CONIC_BLOCK_PIXELS; at += CONIC_LANES)
+      seen |= lanes_bits(lanes_at_least(lanes_load(kept->fragments[i].seen_iz + at), lanes_load(kept->threshold + at)));
+    places[n] = (uint32_t)i;
+    n +=
+        (size_t)(seen != 0) & (size_t)(from->footprints[kept->footprint[i]].s3 > 0.0f); /* no branch could foresee it */
+  }
+  return n;
+}
+
+/* Puts an ellipse's profile in the place of its q. */
+CONIC_INLINE void weigh_ellipse(const sources *from, const sites *s, size_t block, const conic_footprint *footprint,
+                                const smooth_part *smooth, float *q) {
+  const splat_kind kind = smooth ? SPLAT_SMOOTH : SPLAT_PROFILED;
+  splat_rows rows = begin_rows(footprint, s->y);
+  fragments f;
+  rows.smooth = smooth;
+  if (!smooth)
+    begin_profile(from->view, footprint, from->rays, 0, &rows);
+  for (size_t part = 0; part < CONIC_PARTS; part++) {
+    ellipse_fragments(from->view, &rows, from->support, kind, (s->x[block * CONIC_PARTS + part] - rows.x) + rows.dx0,
+                      &f);
+    lanes_store(q + part * CONIC_LANES, f.scale);
+  }
+}
+
+/* Of all ellipses that the band keeps and shows: what is hidden needs none. */
+static __attribute__((noinline)) void weigh_ellipses(conic_band *band, const sources *from, const sites *s) {
+  uint32_t places[CONIC_KEPT_SPLATS];
+  smooth_group group;
+  for (int block = 0; block < band->n_blocks; block++) {
+    conic_kept *kept = &band->kept[block];
+    const size_t n = find_seen(from, kept, band->n_kept[block], places);
+    for (size_t i = 0; i < n; i++) {
+      const size_t lane = i % CONIC_LANES;
+      if (lane == 0)
+        find_smooth(from, kept, places + i, n - i < CONIC_LANES ? n - i : CONIC_LANES, &group);
+      const conic_footprint *footprint = &from->footprints[kept->footprint[places[i]]];
+      float *q = kept->fragments[places[i]].q;
+      if (__builtin_expect(group.is_smooth >> lane & 1, 1))
+        weigh_ellipse(from, s, (size_t)block, footprint, &group.parts[lane], q);
+      else
+        weigh_ellipse(from, s, (size_t)block, footprint, NULL, q);
+    }
   }
 }
 

@@ -34,8 +34,11 @@ words("H4", "§3.2.4: levels of detail that keep the borders of patches", FULL, 
 words("H5", "§3.3.1, end of 3.3.2: surfels, and their levels by halving", FULL, "conic hybrid",
       "Ellipses; levels are nodes of a tree")
 words("H6", "Alg. 3.4: rays from three faces, l / c apart, between a least and a greatest distance", PARTLY,
-      "conic hybrid --sampling box --density 4", "26,291 surfels of the cow; no least and greatest distance")
-words("H7", "§3.3.2: bump, displacement and procedural maps while sampling", ABSENT, "", "Not built")
+      "conic hybrid --sampling box --density 4", "26,291 surfels of the cow. No least and greatest distance: a patch is small where its surface bends, so l / c bounds "
+      "itself, and H15 reaches the thesis' counts without them")
+words("H7", "§3.3.2: bump, displacement and procedural maps while sampling", ABSENT, "conic hybrid --texture",
+      "Colours of a texture are sampled. Maps of height or normals would move surfels off the mesh whose edges they must meet, "
+      "and no mesh of the thesis has one; displace the mesh first")
 words("H8", "Eqs. 3.15–3.27: EWA by the Jacobian", FULL, "conic render --method affine",
       "Eq. 3.27 as corrected ([errata](../notes/errata.md))")
 words("H9", "§3.4.2, Figs. 4.5–4.6: a depth for each pixel, ε of 0.75–1.5 grid distances, three passes", FULL,

@@ -92,6 +92,8 @@ def _(bench):
 
 words("L10", "§4: where children are missing, the parent is drawn, larger", FULL, "conic render --deadline S",
       "JSON `places_coarser` says how many")
+words("L11", "§4: a queue by priority asks for as many clouds as the link allows", FULL, "conic render URL --deadline S",
+      "Level by level, small ranges first, each cloud as its bytes come ([measured](../notes/layers-measured.md#a-slow-link))")
 words("L12", "§4: a projected bound decides what is refined", FULL, "conic render --error PX",
       "A bound, so 1.0–1.9 times what is true ([measured](../notes/layers-measured.md))")
 
@@ -122,6 +124,9 @@ words("L15", "§4, Fig. 3: occlusion leaves out 27 % of the patches, 24 → 6.3 
 words("L16", "§6: memory is 27 % of the data", FULL, "conic render --memory 64", "61 MiB of 390 MB (100 M samples)")
 words("L17", "§6: 40 M splats/s, at most 68 M; 30 M with occlusion", PARTLY, "conic bench",
       "16–21 M/s a core, as filtered splats, not as points of one colour")
+words("L18", "§6, Fig. 5: pictures that come over 1.25 Mbit/s", FULL, "conic render URL --error 1 --deadline S",
+      "The lion, 1.8 MB: 26 dB at 1.2 s, 34 at 4, 41 at 8, whole at 12.6; `curl` takes 11.9 "
+      "([measured](../notes/layers-measured.md#a-slow-link))")
 words("L19", "§6: coarse pictures alias; to be improved", FULL, "conic layer",
       "Averaging colours was tried: +0.3–0.5 dB, not kept; splats are drawn through the prefilter")
 words("L20", "Future: a size, texture and transparency for each sample", FULL,
