@@ -154,10 +154,10 @@ typedef enum conic_hybrid_kind { CONIC_HYBRID_TRIANGLES = 0, CONIC_HYBRID_SURFEL
 
 typedef struct conic_hybrid_view {
   size_t size;     /* sizeof(conic_hybrid_view), set by the init function */
-  double error_px; /* above 0: each cluster is drawn by its cheapest level whose error on the screen is at most this; 0:
-                      as built */
+  double error_px; /* above 0: the fewest triangles and surfels whose error on the screen is at most this; 0: as
+                      built */
   int only_kind;   /* -1: either; else the conic_hybrid_kind of all clusters: the finest level, or with error_px the
-                      cheapest that is good enough */
+                      fewest that are good enough */
   uint64_t budget; /* or, where not 0: the least error that so many triangles and surfels in sight can give */
   double color_error; /* above 0: with error_px, how much colours may differ, in hundredths of the way from black to
                          white in OKLab; with a budget, the difference that counts as much as a pixel. 2 is just
@@ -169,7 +169,7 @@ CONIC_API void conic_hybrid_view_init_sized(conic_hybrid_view *view, size_t size
 #define conic_hybrid_view_init(view) conic_hybrid_view_init_sized(view, sizeof *(view))
 
 /* The contents of one picture. With an error or a budget, a node of the tree that does not reach the near distance may
- * replace all of its clusters, by a few surfels or by one splat that faces the camera. Zero before the first use; the
+ * replace all of its clusters, by triangles, by a few surfels or by one splat that faces the camera. Zero before the first use; the
  * memory is kept from call to call. */
 typedef struct conic_hybrid_selection {
   conic_splats splats;
