@@ -237,9 +237,8 @@ static uint64_t count_chosen(const hybrid_planning *p) {
 }
 
 /* Chooses for all; how many that are, without those that fit clusters to each other. */
-static uint64_t choose_alone(void *data, double error_px, uint64_t most, double *reached_px) {
+static uint64_t choose_alone(void *data, double error_px, double *reached_px) {
   hybrid_planning *p = data;
-  (void)most;
   p->error_px = error_px;
   p->is_short = 0;
   for (size_t i = 0; i < p->asked->n; i++) {
@@ -270,9 +269,9 @@ static uint64_t count_stitches(const hybrid_planning *p, double *counts) {
 }
 
 /* The same with those. */
-static uint64_t choose_fitting(void *data, double error_px, uint64_t most, double *reached_px) {
-  uint64_t count = choose_alone(data, error_px, most, reached_px);
-  return count > most ? count : count + count_stitches(data, NULL);
+static uint64_t choose_fitting(void *data, double error_px, double *reached_px) {
+  uint64_t count = choose_alone(data, error_px, reached_px);
+  return count + count_stitches(data, NULL);
 }
 
 /* --- budgets --- */
@@ -297,21 +296,20 @@ static double next_error(const hybrid_planning *p, double error_px) {
  * was found, the number that it takes, or the coarsest does, and the error of what was chosen. */
 static int fit(hybrid_planning *p, uint64_t *count, double *reached_px) {
   enum { ONE_BY_ONE = 64 };
-  const conic_plan alone = {p, choose_alone}, fitting = {p, choose_fitting};
   uint64_t budget = p->asked->budget;
   double error_px = 0.0;
-  if (choose_alone(p, 0.0, budget, reached_px) > budget && !conic_plan_fit(&alone, budget, 0.0, &error_px))
+  if (choose_alone(p, 0.0, reached_px) > budget && !conic_plan_fit(choose_alone, p, budget, 0.0, &error_px))
     error_px = HUGE_VAL;
   for (int i = 0; i < ONE_BY_ONE; i++) {
-    *count = choose_fitting(p, error_px, UINT64_MAX, reached_px);
+    *count = choose_fitting(p, error_px, reached_px);
     if (*count <= budget)
       return 1;
     if (!(error_px < HUGE_VAL))
       return 0;
     error_px = next_error(p, error_px);
   }
-  int is_found = conic_plan_fit(&fitting, budget, error_px, &error_px);
-  *count = choose_fitting(p, is_found ? error_px : HUGE_VAL, UINT64_MAX, reached_px);
+  int is_found = conic_plan_fit(choose_fitting, p, budget, error_px, &error_px);
+  *count = choose_fitting(p, is_found ? error_px : HUGE_VAL, reached_px);
   return is_found;
 }
 
@@ -334,7 +332,7 @@ static void take_best(const hybrid_planning *p, uint64_t count, double reached_p
  * be fewer. */
 static void keep_error(hybrid_planning *p, plan_best *best) {
   double reached_px;
-  uint64_t count = choose_alone(p, p->asked->error_px, UINT64_MAX, &reached_px), n = count_stitches(p, p->counts);
+  uint64_t count = choose_alone(p, p->asked->error_px, &reached_px), n = count_stitches(p, p->counts);
   if (p->is_short && p->only_kind != p->asked->only_kind)
     return;
   if (count + n < best->count)
