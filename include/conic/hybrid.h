@@ -153,12 +153,12 @@ CONIC_API conic_status conic_hybrid_check(const conic_hybrid *hybrid, conic_hybr
 typedef enum conic_hybrid_kind { CONIC_HYBRID_TRIANGLES = 0, CONIC_HYBRID_SURFELS = 1 } conic_hybrid_kind;
 
 typedef struct conic_hybrid_view {
-  size_t size;     /* sizeof(conic_hybrid_view), set by the init function */
-  double error_px; /* above 0: each cluster is drawn by its cheapest level whose error on the screen is at most this; 0:
-                      as built */
-  int only_kind;   /* -1: either; else the conic_hybrid_kind of all clusters: the finest level, or with error_px the
-                      cheapest that is good enough */
-  uint64_t budget; /* or, where not 0: the least error that so many triangles and surfels in sight can give */
+  size_t size;        /* sizeof(conic_hybrid_view), set by the init function */
+  double error_px;    /* above 0: the fewest triangles and surfels whose error on the screen is at most this; 0: as
+                         built */
+  int only_kind;      /* -1: either; else the conic_hybrid_kind of all clusters: the finest level, or with error_px the
+                         fewest that are good enough */
+  uint64_t budget;    /* or, where not 0: the least error that so many triangles and surfels in sight can give */
   double color_error; /* above 0: with error_px, how much colours may differ, in hundredths of the way from black to
                          white in OKLab; with a budget, the difference that counts as much as a pixel. 2 is just
                          visible; infinite: colours do not matter */
@@ -169,8 +169,8 @@ CONIC_API void conic_hybrid_view_init_sized(conic_hybrid_view *view, size_t size
 #define conic_hybrid_view_init(view) conic_hybrid_view_init_sized(view, sizeof *(view))
 
 /* The contents of one picture. With an error or a budget, a node of the tree that does not reach the near distance may
- * replace all of its clusters, by a few surfels or by one splat that faces the camera. Zero before the first use; the
- * memory is kept from call to call. */
+ * replace all of its clusters, by triangles, by a few surfels or by one splat that faces the camera. Zero before the
+ * first use; the memory is kept from call to call. */
 typedef struct conic_hybrid_selection {
   conic_splats splats;
   conic_triangles triangles; /* the hybrid owns the textures; the cluster numbers are the hybrid's */

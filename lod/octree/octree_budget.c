@@ -1,16 +1,15 @@
-/* The least error that so many splats can give. */
+/* The least error that so many splats can give, and the view of an octree. */
 
 #include "core/base/base.h"
 #include "core/image/viewpoint.h"
 #include "lod/octree/octree_loops.h"
 #include "lod/octree/octree_view.h"
+#include "lod/planner/plan.h"
 
-/* A node gives way to its children once the error asked for is below `pixels`: its own and those of all nodes above,
- * for these have given way before. Then there are `change` more splats. */
-typedef struct opening {
-  uint32_t pixels; /* the bits of a float that is not negative, which order like it */
-  int32_t change;
-} opening;
+typedef struct octree_opening {
+  const conic_octree *octree;
+  const conic_octree_view *view;
+} octree_opening;
 
 /* The way down to a node that is in sight. */
 typedef struct budget_node {
@@ -19,70 +18,42 @@ typedef struct budget_node {
   size_t i_opening;
 } budget_node;
 
-/* Every node in sight, in preorder. Returns how many there are. */
-static size_t list_openings(const conic_octree *octree, const conic_octree_view *view, opening *openings) {
+/* In preorder. */
+static size_t open_nodes(const void *data, double low_px, conic_plan_opening *openings, uint64_t *n_first) {
+  const octree_opening *o = data;
+  const conic_octree *octree = o->octree;
   budget_node path[CONIC_OCTREE_DEPTH + 1];
   conic_measured measured = {0};
   size_t n = 0;
   int depth = 0;
+  *n_first = 0;
   for (size_t i = 0; i < octree->n_nodes;) {
-    float pixels = conic_octree_look_up(octree, view, i, &measured);
+    float pixels = conic_octree_look_up(octree, o->view, i, &measured);
     while (depth > 0 && i >= path[depth - 1].end)
       depth--;
-    if (pixels < 0.0f) {
+    if (pixels >= 0.0f && depth > 0)
+      openings[path[depth - 1].i_opening].change++;
+    else if (pixels >= 0.0f)
+      ++*n_first;
+    if (!((double)pixels > low_px)) {
       i = octree->end[i];
       continue;
     }
     float above = depth > 0 ? path[depth - 1].pixels : pixels, least = pixels < above ? pixels : above;
-    if (depth > 0)
-      openings[path[depth - 1].i_opening].change++;
-    openings[n] =
-        (opening){conic_bits_of_float(least), (int32_t)(octree->first_leaf[i + 1] - octree->first_leaf[i]) - 1};
+    openings[n] = (conic_plan_opening){(double)least, (int64_t)(octree->first_leaf[i + 1] - octree->first_leaf[i]) - 1};
     path[depth++] = (budget_node){octree->end[i], least, n++};
     i++;
   }
   return n;
 }
 
-/* Sorts by falling pixels, and keeps the order of equals. `other` has room for as many. */
-static void sort_openings(opening *openings, opening *other, size_t n) {
-  enum { DIGIT_BITS = 11, N_DIGITS = 1 << DIGIT_BITS };
-  for (int shift = 0; shift < 33; shift += DIGIT_BITS) {
-    size_t places[N_DIGITS] = {0}, place = 0;
-    for (size_t i = 0; i < n; i++)
-      places[openings[i].pixels >> shift & (N_DIGITS - 1)]++;
-    for (int digit = N_DIGITS - 1; digit >= 0; digit--) {
-      size_t count = places[digit];
-      places[digit] = place;
-      place += count;
-    }
-    for (size_t i = 0; i < n; i++)
-      other[places[openings[i].pixels >> shift & (N_DIGITS - 1)]++] = openings[i];
-    memcpy(openings, other, n * sizeof *openings);
-  }
-}
-
 conic_status conic_octree_fit_budget(const conic_octree *octree, const conic_octree_view *view, uint64_t budget,
                                      float *error_px) {
-  conic_context *context = octree->context;
-  opening *openings = conic_memory_allocate(context, octree->n_nodes + 1, sizeof *openings);
-  opening *other = conic_memory_allocate(context, octree->n_nodes + 1, sizeof *other);
-  conic_status status = openings && other ? CONIC_OK : CONIC_ERROR_MEMORY;
-  if (status == CONIC_OK) {
-    size_t n = list_openings(octree, view, openings);
-    int64_t count = 1;
-    uint32_t best = n ? openings[0].pixels : 0;
-    sort_openings(openings, other, n);
-    for (size_t i = 0; i < n; i++) { /* before all that have these pixels give way, so many are chosen: */
-      if ((i == 0 || openings[i].pixels < openings[i - 1].pixels) && count <= (int64_t)budget)
-        best = openings[i].pixels;
-      count += openings[i].change;
-    }
-    if (count <= (int64_t)budget)
-      best = 0;
-    *error_px = conic_float_of_bits(best);
-  }
-  conic_memory_release_these(context, openings, other);
+  const octree_opening opening = {octree, view};
+  const conic_plan_tree tree = {&opening, octree->n_nodes, open_nodes};
+  double found_px = 0.0;
+  conic_status status = conic_plan_fit_tree(octree->context, &tree, budget, &found_px);
+  *error_px = (float)found_px;
   return status;
 }
 

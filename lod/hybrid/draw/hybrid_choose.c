@@ -1,403 +1,181 @@
 #include "lod/hybrid/draw/hybrid_choose.h"
 
 #include "core/base/base.h"
-#include "lod/hybrid/model/hybrid_chunks.h"
+#include "lod/hybrid/draw/hybrid_selecting.h"
+#include "lod/planner/plan.h"
 
-/* Rounds in which each cluster is thought over; and how much less a picture of both kinds must promise to be preferred
- * to one of a single kind. */
-enum { ROUNDS = 4 };
-static const double margin = 0.97;
+/* The level of a cluster or node, from its first, and how many primitives it has. */
+typedef struct plan_offer {
+  uint32_t level;
+  double count;
+} plan_offer;
 
-/* Surfels that take less of what triangles do stay surfels whatever is beside them, and nothing is looked up for
- * them. */
-static const double decided = 0.5;
-
-/* A cluster in sight. Infinite costs are of a kind that is not good enough. */
-typedef struct plan_candidate {
-  conic_hybrid_offer offers[2]; /* by kind; of surfels its share of a node's that may stand for them */
-  double alone_ns;              /* of its own surfels */
-  uint32_t first_link, n_links;
-  uint8_t kind;
-} plan_candidate;
-
-/* Two clusters side by side: what triangles of the one take more if the other is drawn as surfels, for then their
- * border has all of its vertices. Kept with both: with the one in `own_ns`, with the other in `other_ns`. */
-typedef struct cluster_link {
-  uint32_t candidate;
-  double own_ns, other_ns;
-} cluster_link;
-
+/* Errors below 0 were not asked for yet. Those that keep no colours are not a number. */
 typedef struct hybrid_planning {
+  const conic_hybrid_choosing *asked;
   const conic_hybrid *hybrid;
-  size_t n;
-  const uint32_t *clusters;
-  plan_candidate *candidates;
-  uint32_t *of_cluster; /* of each of the model's clusters: its candidate, or n out of sight; n + 1: a node stands */
-  size_t n_links;
-  cluster_link *links;
-  uint8_t *kinds; /* what was found before */
-  const conic_hybrid_camera *view;
-  double error_px;
-  double *amounts, *below; /* of each cluster of the model, and of each node, for cutting */
-  uint32_t *nodes;
-  conic_hybrid_offer *node_offers; /* once they were asked for; before, of no amount */
-  const uint32_t *seen;
-  size_t n_seen, n_standing; /* nodes that may stand, and that do already */
+  int only_kind;
+  double error_px;   /* what is chosen for */
+  double *errors_px; /* of all levels of the first cluster, then of the second …; then of the first node's levels and
+                        its point, then of the second's … */
+  size_t *first_errors;   /* of each cluster in sight, and of each node in sight */
+  double *units;          /* of each cluster in sight: the pixels that a displacement by one can be within its sphere */
+  uint32_t *levels;       /* of each cluster in sight */
+  double *counts, *below; /* primitives of each cluster of the model by itself; of what is below each of its nodes */
+  uint32_t *nodes;        /* what stands for its clusters */
+  uint32_t *standing;     /* of each of the model's clusters: the node that stands for it */
+  uint32_t *stages;       /* of each of the model's clusters: of the level that it has; hidden if it is not in sight */
+  int is_short;           /* nothing of some cluster is good enough */
 } hybrid_planning;
 
-static const conic_hybrid_level *triangles_of(const hybrid_planning *p, size_t i) {
-  const conic_hybrid_cluster *cluster = &p->hybrid->clusters[p->clusters[i]];
-  return &p->hybrid->levels[cluster->first_level + p->candidates[i].offers[CONIC_HYBRID_TRIANGLES].level];
+/* --- how far what can be chosen is off --- */
+
+/* Colours that are off by what is allowed count as much as places that are off by a pixel, where the error is to be the
+ * least; else they are good enough, or not. */
+static double with_colors(const hybrid_planning *p, double error_px, double change) {
+  double allowed = p->asked->view->color_error;
+  if (!p->asked->budget)
+    return change <= allowed ? error_px : NAN;
+  double colors = change > 0.0 ? change / allowed : 0.0;
+  return error_px > colors ? error_px : colors;
 }
 
-static void ask(hybrid_planning *p) {
-  for (size_t i = 0; i < p->n; i++) {
-    plan_candidate *c = &p->candidates[i];
-    conic_hybrid_offers(p->hybrid, p->view, &p->hybrid->clusters[p->clusters[i]], p->error_px, c->offers);
-    c->alone_ns = c->offers[CONIC_HYBRID_SURFELS].amount;
-  }
+static double cluster_px(const hybrid_planning *p, size_t i, uint32_t k) {
+  const conic_hybrid_camera *view = p->asked->view;
+  const conic_hybrid_cluster *cluster = &p->hybrid->clusters[p->asked->clusters[i]];
+  const conic_hybrid_level *level = &p->hybrid->levels[cluster->first_level + k];
+  double *error_px = &p->errors_px[p->first_errors[i] + k];
+  if (*error_px < 0.0)
+    *error_px = with_colors(p, conic_hybrid_error_px(view, &cluster->bound, level),
+                            conic_hybrid_change(view, &cluster->bound, level));
+  return *error_px;
 }
 
-static conic_hybrid_offer ask_node(const void *data, const conic_hybrid_node *node) {
-  const hybrid_planning *p = data;
-  conic_hybrid_offer *offer = &p->node_offers[node - p->hybrid->nodes];
-  if (!(offer->amount > 0.0))
-    *offer = conic_hybrid_node_offer(p->hybrid, p->view, node, p->error_px);
-  return *offer;
+/* Where all is simplified as one, the greatest error is at few places. Such pictures are nearer to the mesh than those
+ * of clusters that err by more than half of it (docs/notes/hybrid-measured.md). */
+static const double weight_of_whole = 0.5;
+
+static double measure_node(const hybrid_planning *p, const conic_hybrid_node *node, uint32_t k) {
+  const conic_hybrid_camera *view = p->asked->view;
+  if (k == node->n_levels)
+    return with_colors(p, conic_hybrid_point_error_px(view, node), conic_hybrid_point_change(view, node));
+  const conic_hybrid_level *level = &p->hybrid->levels[node->first_level + k];
+  double weight = p->asked->budget && level->kind == CONIC_HYBRID_TRIANGLES ? weight_of_whole : 1.0;
+  return with_colors(p, weight * conic_hybrid_node_error_px(p->hybrid, view, node, level),
+                     conic_hybrid_change(view, &node->bound, level));
 }
 
-/* Lets nodes stand for clusters that are surfels now. Returns how much less these take by that. */
-static double cut_nodes(const hybrid_planning *p) {
-  const conic_hybrid_cutting cutting = {p->hybrid, p->amounts, ask_node, p, p->below};
-  for (size_t i = 0; i < p->n; i++) {
-    const plan_candidate *c = &p->candidates[i];
-    int may_join = c->kind == CONIC_HYBRID_SURFELS && c->alone_ns < HUGE_VAL;
-    p->amounts[p->clusters[i]] = may_join ? c->alone_ns : NAN;
-  }
-  return conic_hybrid_cut(&cutting, p->seen, p->n_seen, p->nodes);
+/* Of the i-th node in sight. */
+static double node_px(const hybrid_planning *p, size_t i, uint32_t k) {
+  double *error_px = &p->errors_px[p->first_errors[p->asked->n + i] + k];
+  if (*error_px < 0.0)
+    *error_px = measure_node(p, &p->hybrid->nodes[p->asked->seen[i]], k);
+  return *error_px;
 }
 
-/* The links of one candidate, one for each neighbour: `last` has for each candidate the link that names it. */
-static void add_links(hybrid_planning *p, uint32_t i, uint32_t *last) {
-  const conic_hybrid_level *level = triangles_of(p, i);
-  plan_candidate *c = &p->candidates[i];
-  c->first_link = (uint32_t)p->n_links;
-  c->n_links = 0;
-  if (level->n_borders == 0)
-    return;
-  conic_hybrid_frame frame = conic_hybrid_frame_of(p->hybrid, p->clusters[i]);
-  for (size_t k = 0; k < level->n_borders; k++) {
-    const conic_cluster_border *border = &frame.borders[level->first_border + k];
-    uint32_t other = p->of_cluster[border->across];
-    uint32_t n = border->from < border->to ? border->to - border->from : border->from - border->to;
-    if (other > p->n)
-      c->offers[CONIC_HYBRID_TRIANGLES].amount += CONIC_HYBRID_STITCH_NS * ((double)n - 1.0);
-    if (other >= p->n)
+/* --- what is chosen for an error --- */
+
+static int is_allowed(const hybrid_planning *p, const conic_hybrid_level *level) {
+  return p->only_kind < 0 || level->kind == (uint32_t)p->only_kind;
+}
+
+/* Of two levels of a cluster with as many primitives, whether the first is drawn faster. */
+static int is_faster(const hybrid_planning *p, const conic_hybrid_cluster *cluster, uint32_t a, uint32_t b) {
+  const conic_hybrid_level *levels = p->hybrid->levels + cluster->first_level;
+  return conic_hybrid_cost(p->asked->view, cluster, &levels[a]) <
+         conic_hybrid_cost(p->asked->view, cluster, &levels[b]);
+}
+
+/* The level of fewest primitives among those that are good enough. */
+static uint32_t fewest(hybrid_planning *p, size_t i) {
+  const conic_hybrid_cluster *cluster = &p->hybrid->clusters[p->asked->clusters[i]];
+  const conic_hybrid_level *levels = p->hybrid->levels + cluster->first_level;
+  uint32_t best = UINT32_MAX;
+  for (uint32_t k = cluster->n_levels; k-- > 0;) {
+    int is_more = best < UINT32_MAX && levels[k].count > levels[best].count;
+    int is_far = (double)levels[k].error * p->units[i] > p->error_px; /* whatever reaches out */
+    if (!is_allowed(p, &levels[k]) || is_more || is_far || !(cluster_px(p, i, k) <= p->error_px))
       continue;
-    if (last[other] < c->first_link || last[other] >= p->n_links) {
-      last[other] = (uint32_t)p->n_links;
-      p->links[p->n_links++] = (cluster_link){.candidate = other};
-    }
-    p->links[last[other]].own_ns += CONIC_HYBRID_STITCH_NS * ((double)n - 1.0);
+    if (best == UINT32_MAX || levels[k].count < levels[best].count || is_faster(p, cluster, k, best))
+      best = k;
   }
-  c->n_links = (uint32_t)p->n_links - c->first_link;
+  if (best < UINT32_MAX)
+    return best;
+  p->is_short = 1;
+  return conic_hybrid_finest(p->hybrid, cluster, p->only_kind);
 }
 
-/* What the other one's triangles take more, as far as it has a link too. */
-static void match_links(hybrid_planning *p) {
-  for (uint32_t i = 0; i < p->n; i++)
-    for (size_t k = p->candidates[i].first_link; k < p->candidates[i].first_link + p->candidates[i].n_links; k++) {
-      const plan_candidate *other = &p->candidates[p->links[k].candidate];
-      for (size_t m = other->first_link; m < other->first_link + other->n_links; m++)
-        if (p->links[m].candidate == i)
-          p->links[k].other_ns = p->links[m].own_ns;
-    }
+static const conic_hybrid_level *chosen(const hybrid_planning *p, size_t i) {
+  return &p->hybrid->levels[p->hybrid->clusters[p->asked->clusters[i]].first_level + p->levels[i]];
 }
 
-static int is_decided(const plan_candidate *c) {
-  return c->offers[CONIC_HYBRID_SURFELS].amount < decided * c->offers[CONIC_HYBRID_TRIANGLES].amount;
-}
-
-static conic_status find_links(hybrid_planning *p) {
-  size_t n_borders = 0;
-  for (size_t i = 0; i < p->n; i++)
-    n_borders += is_decided(&p->candidates[i]) ? 0 : triangles_of(p, i)->n_borders;
-  uint32_t *last = conic_memory_allocate_zeroed(p->hybrid->context, p->n, sizeof *last);
-  p->links = conic_memory_allocate(p->hybrid->context, n_borders, sizeof *p->links);
-  if (last && p->links) {
-    for (uint32_t i = 0; i < p->n; i++)
-      if (!is_decided(&p->candidates[i]))
-        add_links(p, i, last);
-    match_links(p);
-  }
-  conic_memory_release(p->hybrid->context, last);
-  return last && p->links ? CONIC_OK : CONIC_ERROR_MEMORY;
-}
-
-/* What a candidate takes as one kind and as the other, its neighbours being what they are. */
-static void weigh(const hybrid_planning *p, const plan_candidate *c, double costs[2]) {
-  costs[0] = c->offers[0].amount;
-  costs[1] = c->offers[1].amount;
-  for (size_t k = 0; k < c->n_links; k++) {
-    const cluster_link *l = &p->links[c->first_link + k];
-    if (p->candidates[l->candidate].kind == CONIC_HYBRID_SURFELS)
-      costs[CONIC_HYBRID_TRIANGLES] += l->own_ns;
+/* How many of a node's levels are triangles that need not be looked at, as they err by more than is allowed: the
+ * first of the rest is the coarsest that may do. Errors grow with the level, but for colours. */
+static uint32_t coarsest_triangles(const hybrid_planning *p, size_t i, uint32_t n_triangles) {
+  uint32_t good = 0, bad = n_triangles;
+  while (good < bad) {
+    uint32_t middle = good + (bad - good) / 2;
+    if (node_px(p, i, middle) > p->error_px)
+      bad = middle;
     else
-      costs[CONIC_HYBRID_SURFELS] += l->other_ns;
+      good = middle + 1;
   }
+  return good;
 }
 
-/* Each cluster in turn becomes what is cheaper, until none does. */
-static void improve(hybrid_planning *p) {
-  int is_changed = 1;
-  for (int round = 0; round < ROUNDS && is_changed; round++) {
-    is_changed = 0;
-    for (size_t i = 0; i < p->n; i++) {
-      plan_candidate *c = &p->candidates[i];
-      double costs[2];
-      weigh(p, c, costs);
-      if (costs[!c->kind] < costs[c->kind]) {
-        c->kind = !c->kind;
-        is_changed = 1;
-      }
-    }
+/* The triangles of a node that may stand for it: the fewest, or for a budget the most that there is room for, as the
+ * levels lie close together and some err alike. */
+static plan_offer ask_triangles(const hybrid_planning *p, size_t i) {
+  const conic_hybrid_node *node = &p->hybrid->nodes[p->asked->seen[i]];
+  const conic_hybrid_level *levels = p->hybrid->levels + node->first_level;
+  plan_offer best = {0, HUGE_VAL};
+  uint32_t n = 0;
+  while (n < node->n_levels && levels[n].kind == CONIC_HYBRID_TRIANGLES)
+    n++;
+  for (uint32_t k = coarsest_triangles(p, i, n); k-- > 0;) {
+    if (!(node_px(p, i, k) < HUGE_VAL && node_px(p, i, k) <= p->error_px))
+      continue;
+    if (best.count < HUGE_VAL && levels[k].count > p->asked->budget)
+      break;
+    best = (plan_offer){k, (double)levels[k].count};
   }
+  return best;
 }
 
-/* Nodes that stand are surfels. */
-static int is_mixed(const hybrid_planning *p) {
-  for (size_t i = 0; i < p->n; i++)
-    if (p->candidates[i].kind != (p->n_standing ? CONIC_HYBRID_SURFELS : p->candidates[0].kind))
-      return 1;
-  return 0;
-}
-
-/* How much more a picture of both kinds takes than its parts. Clusters share tiles, and there are no more of these than
- * all. */
-static double mixing(const hybrid_planning *p) {
-  double n_pixels = 0.0;
-  for (size_t i = 0; i < p->n; i++)
-    if (p->candidates[i].kind == CONIC_HYBRID_TRIANGLES)
-      n_pixels += conic_hybrid_tile_pixels(p->view, &p->hybrid->clusters[p->clusters[i]]);
-  return conic_hybrid_mixing_ns(p->view, n_pixels < p->view->n_pixels ? n_pixels : p->view->n_pixels);
-}
-
-/* Of what may be either kind: the rest takes the same whatever is chosen, and may be most of it. */
-static int can_be_either(const plan_candidate *c) {
-  return c->offers[CONIC_HYBRID_SURFELS].amount < HUGE_VAL;
-}
-
-/* What all takes that may be either kind; with what a picture of both kinds must promise to be preferred. */
-static double total(const hybrid_planning *p) {
-  int is_both = is_mixed(p);
-  double sum = is_both ? mixing(p) : 0.0;
-  for (size_t i = 0; i < p->n; i++) {
-    const plan_candidate *c = &p->candidates[i];
-    double triangles_ns = can_be_either(c) ? c->offers[CONIC_HYBRID_TRIANGLES].amount : 0.0;
-    sum += c->kind == CONIC_HYBRID_SURFELS ? c->alone_ns : triangles_ns;
-    for (size_t k = 0; k < c->n_links && c->kind == CONIC_HYBRID_TRIANGLES; k++)
-      if (p->candidates[p->links[c->first_link + k].candidate].kind == CONIC_HYBRID_SURFELS)
-        sum += p->links[c->first_link + k].own_ns;
+/* The way of the i-th node in sight that has fewest, the better one of as many; never one whose error is infinite: what
+ * reaches near is not joined, and a point that is not there, or that the eye is in, cannot be drawn. */
+static plan_offer ask_node(const hybrid_planning *p, size_t i) {
+  const conic_hybrid_node *node = &p->hybrid->nodes[p->asked->seen[i]];
+  plan_offer best = {0, HUGE_VAL};
+  if (p->only_kind == CONIC_HYBRID_TRIANGLES)
+    return ask_triangles(p, i);
+  for (uint32_t k = node->n_levels + 1; k-- > 0;) {
+    const conic_hybrid_level *level = k < node->n_levels ? &p->hybrid->levels[node->first_level + k] : NULL;
+    double count = level ? (double)level->count : 1.0;
+    if (level && level->kind == CONIC_HYBRID_TRIANGLES)
+      break; /* so are all before it */
+    if (count < best.count && node_px(p, i, k) < HUGE_VAL && node_px(p, i, k) <= p->error_px)
+      best = (plan_offer){k, count};
   }
-  sum -= cut_nodes(p);
-  return is_both ? sum / margin : sum;
+  if (p->only_kind == CONIC_HYBRID_SURFELS)
+    return best;
+  plan_offer triangles = ask_triangles(p, i);
+  return triangles.count < best.count ? triangles : best;
 }
 
-/* All of one kind, where that is good enough. */
-static void take_kind(hybrid_planning *p, uint8_t kind) {
-  for (size_t i = 0; i < p->n; i++)
-    p->candidates[i].kind = p->candidates[i].offers[kind].amount < HUGE_VAL ? kind : !kind;
-}
-
-/* What each cluster's surfels take if all are surfels and nodes stand for them; and what is cheaper then. */
-static void share(hybrid_planning *p) {
-  take_kind(p, CONIC_HYBRID_SURFELS);
-  if (cut_nodes(p) > 0.0)
-    for (size_t i = 0; i < p->hybrid->n_nodes; i++) {
-      const conic_hybrid_node *node = &p->hybrid->nodes[i];
-      double sum = 0.0;
-      if (p->nodes[i] == CONIC_HYBRID_NO_NODE)
-        continue;
-      for (uint32_t k = node->begin; k < node->end; k++)
-        sum += p->amounts[k];
-      for (uint32_t k = node->begin; k < node->end; k++)
-        if (p->amounts[k] > 0.0)
-          p->candidates[p->of_cluster[k]].offers[CONIC_HYBRID_SURFELS].amount *= p->below[i] / sum;
-    }
-  for (size_t i = 0; i < p->n; i++) {
-    plan_candidate *c = &p->candidates[i];
-    c->kind = c->offers[CONIC_HYBRID_SURFELS].amount < c->offers[CONIC_HYBRID_TRIANGLES].amount;
-  }
-}
-
-static void keep_if_less(hybrid_planning *p, double sum, double *least) {
-  if (!(sum < *least))
-    return;
-  *least = sum;
-  for (size_t i = 0; i < p->n; i++)
-    p->kinds[i] = p->candidates[i].kind;
-}
-
-/* Begins with what each would be by itself; or with triangles alone, or surfels wherever they are good enough. */
-static void settle(hybrid_planning *p) {
-  double least = HUGE_VAL;
-  improve(p);
-  keep_if_less(p, total(p), &least);
-  for (uint8_t kind = 0; kind < 2; kind++) {
-    take_kind(p, kind);
-    keep_if_less(p, total(p), &least);
-  }
-  for (size_t i = 0; i < p->n; i++)
-    p->candidates[i].kind = p->kinds[i];
-}
-
-/* Whether all of one kind takes hardly more than the cheaper of both for each cluster: then no better one has to be
- * looked for. */
-static int is_settled(hybrid_planning *p) {
-  double sums[2] = {0.0, 0.0}, least = 0.0;
-  int is_bound = 0;
-  for (size_t i = 0; i < p->n; i++) {
-    const plan_candidate *c = &p->candidates[i];
-    is_bound |= !can_be_either(c);
-    least += can_be_either(c) ? c->offers[c->kind].amount : 0.0;
-    for (int kind = 0; kind < 2; kind++)
-      sums[kind] += can_be_either(c) ? c->offers[kind].amount : 0.0;
-  }
-  uint8_t kind = !is_bound && sums[CONIC_HYBRID_SURFELS] < sums[CONIC_HYBRID_TRIANGLES];
-  if (is_mixed(p) && !(sums[kind] <= least / margin))
-    return 0;
-  take_kind(p, kind);
-  return 1;
-}
-
-/* The kind that is asked for; where it is good enough nowhere, its finest. */
-static void obey(hybrid_planning *p, int only_kind) {
-  for (size_t i = 0; i < p->n; i++) {
-    const conic_hybrid_cluster *cluster = &p->hybrid->clusters[p->clusters[i]];
-    conic_hybrid_offer *offer = &p->candidates[i].offers[only_kind];
-    p->candidates[i].kind = (uint8_t)only_kind;
-    if (!(offer->amount < HUGE_VAL))
-      offer->level = conic_hybrid_finest(p->hybrid, cluster, only_kind);
-  }
-}
-
-static conic_status plan_kinds(hybrid_planning *p) {
-  share(p);
-  if (is_settled(p))
-    return CONIC_OK;
-  conic_status status = find_links(p);
-  if (status == CONIC_OK)
-    settle(p);
-  return status;
-}
-
-/* No node above it can stand any more. */
-static void note_standing(hybrid_planning *p, size_t i) {
-  const conic_hybrid_node *node = &p->hybrid->nodes[i];
-  p->n_standing++;
-  p->below[i] = NAN;
-  for (uint32_t k = node->begin; k < node->end; k++)
-    p->of_cluster[k] = (uint32_t)p->n + 1;
-}
-
-static conic_status begin_plan(hybrid_planning *p) {
-  conic_context *context = p->hybrid->context;
-  p->candidates = conic_memory_allocate_zeroed(context, p->n, sizeof *p->candidates);
-  p->of_cluster = conic_memory_allocate(context, p->hybrid->n_clusters, sizeof *p->of_cluster);
-  p->kinds = conic_memory_allocate(context, p->n, sizeof *p->kinds);
-  p->amounts = conic_memory_allocate_zeroed(context, p->hybrid->n_clusters, sizeof *p->amounts);
-  p->below = conic_memory_allocate_zeroed(context, p->hybrid->n_nodes, sizeof *p->below);
-  p->node_offers = conic_memory_allocate_zeroed(context, p->hybrid->n_nodes, sizeof *p->node_offers);
-  if (!p->candidates || !p->of_cluster || !p->kinds || !p->amounts || !p->below || !p->node_offers)
-    return CONIC_ERROR_MEMORY;
-  for (size_t i = 0; i < p->hybrid->n_clusters; i++)
-    p->of_cluster[i] = (uint32_t)p->n;
-  for (size_t i = 0; i < p->n; i++)
-    p->of_cluster[p->clusters[i]] = (uint32_t)i;
-  for (size_t i = 0; i < p->hybrid->n_nodes; i++)
-    if (p->nodes[i] != CONIC_HYBRID_NO_NODE)
-      note_standing(p, i);
-  return CONIC_OK;
-}
-
-conic_status conic_hybrid_choose_levels(const conic_hybrid_choosing *choosing, uint32_t *levels, uint32_t *nodes) {
-  conic_context *context = choosing->hybrid->context;
-  hybrid_planning p = {.hybrid = choosing->hybrid,
-                       .n = choosing->n,
-                       .clusters = choosing->clusters,
-                       .view = choosing->view,
-                       .error_px = choosing->error_px,
-                       .nodes = nodes,
-                       .seen = choosing->seen,
-                       .n_seen = choosing->n_seen};
-  conic_status status = begin_plan(&p);
-  if (status == CONIC_OK) {
-    ask(&p);
-    if (choosing->only_kind < 0)
-      status = plan_kinds(&p);
-    else
-      obey(&p, choosing->only_kind);
-  }
-  if (status == CONIC_OK)
-    cut_nodes(&p);
-  for (size_t i = 0; i < p.n && status == CONIC_OK; i++)
-    levels[i] = p.candidates[i].offers[p.candidates[i].kind].level;
-  void *const owned[] = {p.links, p.node_offers, p.below, p.amounts, p.kinds, p.of_cluster, p.candidates};
-  conic_memory_release_all(context, owned, sizeof owned / sizeof *owned);
-  return status;
-}
-
-/* --- nodes that stand for their clusters --- */
-
-static double sum_clusters(const conic_hybrid_cutting *c, const conic_hybrid_node *node) {
+static double sum_clusters(const hybrid_planning *p, const conic_hybrid_node *node) {
   double sum = 0.0;
   for (uint32_t i = node->begin; i < node->end; i++)
-    sum += c->amounts[i];
+    sum += p->counts[i];
   return sum;
 }
 
 /* A node's children come right after it, and end where it ends. */
-static double sum_children(const conic_hybrid_cutting *c, size_t node) {
+static double sum_children(const hybrid_planning *p, size_t node) {
   double sum = 0.0;
-  for (size_t i = node + 1; i < c->hybrid->nodes[node].next; i = c->hybrid->nodes[i].next)
-    sum += c->below[i];
+  for (size_t i = node + 1; i < p->hybrid->nodes[node].next; i = p->hybrid->nodes[i].next)
+    sum += p->below[i];
   return sum;
-}
-
-/* A node by itself against the best of what is below it. */
-static void cut_node(const conic_hybrid_cutting *c, size_t i, uint32_t *nodes) {
-  const conic_hybrid_node *node = &c->hybrid->nodes[i];
-  double sum = node->next == i + 1 ? sum_clusters(c, node) : sum_children(c, i);
-  nodes[i] = CONIC_HYBRID_NO_NODE;
-  c->below[i] = sum;
-  if (!(sum > 0.0)) /* nothing is in sight, or something must stay */
-    return;
-  conic_hybrid_offer offer = c->offer(c->data, node);
-  if (offer.amount < sum) {
-    nodes[i] = offer.level;
-    c->below[i] = offer.amount;
-  }
-}
-
-/* The number of the k-th node that is looked at. All are, where there is no list. */
-static size_t seen_node(const uint32_t *seen, size_t k) {
-  return seen ? seen[k] : k;
-}
-
-double conic_hybrid_cut(const conic_hybrid_cutting *c, const uint32_t *seen, size_t n_seen, uint32_t *nodes) {
-  const conic_hybrid *h = c->hybrid;
-  double less = 0.0;
-  for (size_t k = n_seen; k-- > 0;) /* from the leaves to the root */
-    cut_node(c, seen_node(seen, k), nodes);
-  for (size_t k = 0; k < n_seen;) {
-    size_t i = seen_node(seen, k++);
-    if (nodes[i] == CONIC_HYBRID_NO_NODE)
-      continue;
-    less += sum_clusters(c, &h->nodes[i]) - c->below[i];
-    for (; k < n_seen && seen_node(seen, k) < h->nodes[i].next; k++)
-      nodes[seen_node(seen, k)] = CONIC_HYBRID_NO_NODE;
-  }
-  return less;
 }
 
 void conic_hybrid_find_standing(const conic_hybrid *h, const uint32_t *nodes, uint32_t *standing) {
@@ -406,4 +184,231 @@ void conic_hybrid_find_standing(const conic_hybrid *h, const uint32_t *nodes, ui
   for (uint32_t i = 0; i < h->n_nodes; i++)
     for (uint32_t k = h->nodes[i].begin; k < h->nodes[i].end && nodes[i] != CONIC_HYBRID_NO_NODE; k++)
       standing[k] = i;
+}
+
+/* Lets nodes stand for their clusters wherever that is fewer, from the leaves to the root. */
+static void cut_tree(const hybrid_planning *p) {
+  const conic_hybrid_choosing *asked = p->asked;
+  for (size_t k = asked->n_seen; k-- > 0;) {
+    uint32_t i = asked->seen[k];
+    const conic_hybrid_node *node = &p->hybrid->nodes[i];
+    double sum = node->next == i + 1 ? sum_clusters(p, node) : sum_children(p, i);
+    plan_offer offer = {CONIC_HYBRID_NO_NODE, sum};
+    if (sum > 0.0)
+      offer = ask_node(p, k);
+    p->nodes[i] = offer.count < sum ? offer.level : CONIC_HYBRID_NO_NODE;
+    p->below[i] = offer.count < sum ? offer.count : sum;
+  }
+  for (size_t k = 0; k < asked->n_seen;) {
+    uint32_t i = asked->seen[k++];
+    for (; p->nodes[i] != CONIC_HYBRID_NO_NODE && k < asked->n_seen && asked->seen[k] < p->hybrid->nodes[i].next; k++)
+      p->nodes[asked->seen[k]] = CONIC_HYBRID_NO_NODE;
+  }
+  conic_hybrid_find_standing(p->hybrid, p->nodes, p->standing);
+}
+
+static double greatest_error(const hybrid_planning *p) {
+  double greatest = 0.0;
+  for (size_t i = 0; i < p->asked->n; i++)
+    if (p->standing[p->asked->clusters[i]] == CONIC_HYBRID_NO_NODE)
+      greatest = fmax(greatest, cluster_px(p, i, p->levels[i]));
+  for (size_t i = 0; i < p->asked->n_seen; i++)
+    if (p->nodes[p->asked->seen[i]] != CONIC_HYBRID_NO_NODE)
+      greatest = fmax(greatest, node_px(p, i, p->nodes[p->asked->seen[i]]));
+  return greatest;
+}
+
+/* How many primitives were chosen, without those that fit clusters to each other. */
+static uint64_t count_chosen(const hybrid_planning *p) {
+  uint64_t count = 0;
+  for (size_t i = 0; i < p->asked->n; i++)
+    count += p->standing[p->asked->clusters[i]] == CONIC_HYBRID_NO_NODE ? chosen(p, i)->count : 0;
+  for (size_t i = 0; i < p->asked->n_seen; i++) {
+    const conic_hybrid_node *node = &p->hybrid->nodes[p->asked->seen[i]];
+    uint32_t level = p->nodes[p->asked->seen[i]];
+    if (level != CONIC_HYBRID_NO_NODE)
+      count += level < node->n_levels ? p->hybrid->levels[node->first_level + level].count : 1;
+  }
+  return count;
+}
+
+/* Chooses for all; how many that are, without those that fit clusters to each other. */
+static uint64_t choose_alone(void *data, double error_px, double *reached_px) {
+  hybrid_planning *p = data;
+  p->error_px = error_px;
+  p->is_short = 0;
+  for (size_t i = 0; i < p->asked->n; i++) {
+    p->levels[i] = fewest(p, i);
+    p->counts[p->asked->clusters[i]] = (double)chosen(p, i)->count;
+  }
+  cut_tree(p);
+  *reached_px = greatest_error(p);
+  return count_chosen(p);
+}
+
+/* How many triangles more it takes to fit what was chosen to each other. Where there are `counts`, each cluster's are
+ * added to its own. */
+static uint64_t count_stitches(const hybrid_planning *p, double *counts) {
+  uint64_t count = 0;
+  const uint32_t *clusters = p->asked->clusters;
+  for (size_t i = 0; i < p->asked->n; i++)
+    p->stages[clusters[i]] = p->standing[clusters[i]] == CONIC_HYBRID_NO_NODE ? chosen(p, i)->stage : 0;
+  for (size_t i = 0; i < p->asked->n; i++) {
+    if (p->standing[clusters[i]] != CONIC_HYBRID_NO_NODE)
+      continue;
+    size_t n = conic_hybrid_count_stitches(p->hybrid, clusters[i], chosen(p, i), p->stages);
+    count += n;
+    if (counts)
+      counts[clusters[i]] += (double)n;
+  }
+  return count;
+}
+
+/* The same with those. */
+static uint64_t choose_fitting(void *data, double error_px, double *reached_px) {
+  uint64_t count = choose_alone(data, error_px, reached_px);
+  return count + count_stitches(data, NULL);
+}
+
+/* --- budgets --- */
+
+/* The least error above one that anything has. */
+static double next_error(const hybrid_planning *p, double error_px) {
+  const conic_hybrid_choosing *asked = p->asked;
+  double next_px = HUGE_VAL;
+  for (size_t i = 0; i < asked->n + asked->n_seen; i++) {
+    uint32_t n = i < asked->n ? p->hybrid->clusters[asked->clusters[i]].n_levels
+                              : p->hybrid->nodes[asked->seen[i - asked->n]].n_levels + 1;
+    for (uint32_t k = 0; k < n; k++) {
+      double own_px = i < asked->n ? cluster_px(p, i, k) : node_px(p, i - asked->n, k);
+      next_px = own_px > error_px && own_px < next_px ? own_px : next_px;
+    }
+  }
+  return next_px;
+}
+
+/* With what fits clusters to each other, the number may go up and down with the error. So from the least at which the
+ * levels alone are few enough each error is tried, but no more of them than a frame has time for. Returns whether one
+ * was found, the number that it takes, or the coarsest does, and the error of what was chosen. */
+static int fit(hybrid_planning *p, uint64_t *count, double *reached_px) {
+  enum { ONE_BY_ONE = 64 };
+  uint64_t budget = p->asked->budget;
+  double error_px = 0.0;
+  if (choose_alone(p, 0.0, reached_px) > budget && !conic_plan_fit(choose_alone, p, budget, 0.0, &error_px))
+    error_px = HUGE_VAL;
+  for (int i = 0; i < ONE_BY_ONE; i++) {
+    *count = choose_fitting(p, error_px, reached_px);
+    if (*count <= budget)
+      return 1;
+    if (!(error_px < HUGE_VAL))
+      return 0;
+    error_px = next_error(p, error_px);
+  }
+  int is_found = conic_plan_fit(choose_fitting, p, budget, error_px, &error_px);
+  *count = choose_fitting(p, is_found ? error_px : HUGE_VAL, reached_px);
+  return is_found;
+}
+
+/* --- all of it --- */
+
+typedef struct plan_best {
+  uint64_t count;
+  double reached_px;
+  uint32_t *levels, *nodes;
+} plan_best;
+
+static void take_best(const hybrid_planning *p, uint64_t count, double reached_px, plan_best *best) {
+  best->count = count;
+  best->reached_px = reached_px;
+  memcpy(best->levels, p->levels, p->asked->n * sizeof *best->levels);
+  memcpy(best->nodes, p->nodes, p->hybrid->n_nodes * sizeof *best->nodes);
+}
+
+/* Chooses for the error; and with what fits clusters to each other counted before nodes may stand for them, which may
+ * be fewer. */
+static void keep_error(hybrid_planning *p, plan_best *best) {
+  double reached_px;
+  uint64_t count = choose_alone(p, p->asked->error_px, &reached_px), n = count_stitches(p, p->counts);
+  if (p->is_short && p->only_kind != p->asked->only_kind)
+    return;
+  if (count + n < best->count)
+    take_best(p, count + n, reached_px, best);
+  if (n == 0)
+    return;
+  cut_tree(p);
+  count = count_chosen(p) + count_stitches(p, NULL);
+  if (count < best->count)
+    take_best(p, count, reached_px, best);
+}
+
+/* Chooses of either kind; or of one kind alone, which may be fewer together. */
+static conic_status choose_kinds(hybrid_planning *p, uint32_t *levels, uint32_t *nodes) {
+  const conic_hybrid_choosing *asked = p->asked;
+  uint64_t fewest_count = UINT64_MAX, count;
+  plan_best best = {UINT64_MAX, HUGE_VAL, levels, nodes};
+  int last = asked->only_kind < 0 ? CONIC_HYBRID_SURFELS : asked->only_kind;
+  for (p->only_kind = asked->only_kind; p->only_kind <= last; p->only_kind++) {
+    double reached_px = 0.0;
+    if (!asked->budget)
+      keep_error(p, &best);
+    else if (fit(p, &count, &reached_px) && (best.count == UINT64_MAX || reached_px < best.reached_px))
+      take_best(p, count, reached_px, &best);
+    else
+      fewest_count = count < fewest_count ? count : fewest_count;
+  }
+  return best.count < UINT64_MAX
+             ? CONIC_OK
+             : conic_fail(p->hybrid->context, CONIC_ERROR_ARGUMENT,
+                          "hybrid: the coarsest of what is in sight are %llu triangles and surfels, more than the "
+                          "budget of %llu",
+                          (unsigned long long)fewest_count, (unsigned long long)asked->budget);
+}
+
+/* Where each one's errors are. Returns how many there are. */
+static size_t place_errors(const hybrid_planning *p) {
+  const conic_hybrid_choosing *asked = p->asked;
+  size_t n = 0;
+  for (size_t i = 0; i < asked->n + asked->n_seen; i++) {
+    p->first_errors[i] = n;
+    n += i < asked->n ? p->hybrid->clusters[asked->clusters[i]].n_levels
+                      : p->hybrid->nodes[asked->seen[i - asked->n]].n_levels + 1;
+  }
+  return n;
+}
+
+static conic_status begin_plan(hybrid_planning *p) {
+  const conic_hybrid *h = p->hybrid;
+  conic_context *context = h->context;
+  p->first_errors = conic_memory_allocate(context, p->asked->n + p->asked->n_seen, sizeof *p->first_errors);
+  p->units = conic_memory_allocate(context, p->asked->n, sizeof *p->units);
+  p->levels = conic_memory_allocate(context, p->asked->n, sizeof *p->levels);
+  p->counts = conic_memory_allocate_zeroed(context, h->n_clusters, sizeof *p->counts);
+  p->below = conic_memory_allocate_zeroed(context, h->n_nodes, sizeof *p->below);
+  p->nodes = conic_memory_allocate(context, h->n_nodes, sizeof *p->nodes);
+  p->standing = conic_memory_allocate(context, h->n_clusters, sizeof *p->standing);
+  p->stages = conic_memory_allocate(context, h->n_clusters, sizeof *p->stages);
+  if (!p->first_errors || !p->units || !p->levels || !p->counts || !p->below || !p->nodes || !p->standing || !p->stages)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < h->n_clusters; i++)
+    p->stages[i] = CONIC_HYBRID_HIDDEN;
+  for (size_t i = 0; i < h->n_nodes; i++)
+    p->nodes[i] = CONIC_HYBRID_NO_NODE;
+  for (size_t i = 0; i < p->asked->n; i++)
+    p->units[i] = conic_hybrid_pixels_a_unit(p->asked->view, &h->clusters[p->asked->clusters[i]].bound, 0.0);
+  size_t n_errors = place_errors(p);
+  p->errors_px = conic_memory_allocate(context, n_errors, sizeof *p->errors_px);
+  for (size_t i = 0; p->errors_px && i < n_errors; i++)
+    p->errors_px[i] = -1.0;
+  return p->errors_px ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
+conic_status conic_hybrid_choose_levels(const conic_hybrid_choosing *choosing, uint32_t *levels, uint32_t *nodes) {
+  hybrid_planning p = {.asked = choosing, .hybrid = choosing->hybrid};
+  conic_status status = begin_plan(&p);
+  if (status == CONIC_OK)
+    status = choose_kinds(&p, levels, nodes);
+  conic_context *context = choosing->hybrid->context;
+  conic_memory_release_these(context, p.errors_px, p.stages, p.standing, p.nodes, p.below, p.counts, p.levels, p.units,
+                             p.first_errors);
+  return status;
 }

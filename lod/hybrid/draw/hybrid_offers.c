@@ -1,6 +1,6 @@
 #include "lod/hybrid/draw/hybrid_offers.h"
 
-#include <float.h>
+#include "core/base/base.h"
 
 #include "core/base/base.h"
 #include "core/base/trigonometry.h"
@@ -12,10 +12,6 @@
  * (docs/notes/hybrid-measured.md). */
 static const double triangle_ns = 60.0, seen_triangle_ns = 90.0, triangle_pixel_ns = 5.3;
 static const double surfel_ns = 37.0, surfel_pixel_ns = 1.8;
-
-/* What a picture of both kinds takes more: at all, for each of its pixels, and for each in tiles that have triangles.
- */
-static const double both_ns = 30000.0, both_pixel_ns = 0.2, both_tile_ns = 0.5;
 
 void conic_hybrid_camera_init(const conic_hybrid *hybrid, const conic_camera *camera,
                               const conic_render_options *render, conic_hybrid_camera *view) {
@@ -99,13 +95,6 @@ double conic_hybrid_point_change(const conic_hybrid_camera *view, const conic_hy
   return change_of(conic_hybrid_pixels_a_unit(view, &node->bound, 0.0), node->point.change, node->point.smear);
 }
 
-/* Whether places and colours are good enough. */
-static int is_good(const conic_hybrid_camera *view, const sight *seen, const conic_hybrid_level *level,
-                   double error_px) {
-  return error_px_of(view, seen, level) <= error_px &&
-         change_of(pixels_a_unit(view, seen, (double)level->reach), level->change, level->smear) <= view->color_error;
-}
-
 double conic_hybrid_error_px(const conic_hybrid_camera *view, const conic_hybrid_bound *bound,
                              const conic_hybrid_level *level) {
   sight seen = look_at_bound(view, bound);
@@ -156,10 +145,6 @@ static double cost_of_surfels(const conic_hybrid_camera *view, const conic_hybri
   return n * surfel_ns + (n_pixels < most ? n_pixels : most) * surfel_pixel_ns;
 }
 
-double conic_hybrid_disc_cost(const conic_hybrid_camera *view, double radius_px2) {
-  return surfel_ns + surfel_pixel_ns * CONIC_PI * (radius_px2 + view->margin_px2);
-}
-
 /* With what it takes to know costs. */
 static sight look_well_at(const conic_hybrid_camera *view, const conic_hybrid_bound *bound) {
   sight seen = look_at_bound(view, bound);
@@ -169,49 +154,11 @@ static sight look_well_at(const conic_hybrid_camera *view, const conic_hybrid_bo
   return seen;
 }
 
-double conic_hybrid_mixing_ns(const conic_hybrid_camera *view, double n_tile_pixels) {
-  return both_ns + both_pixel_ns * view->n_pixels + both_tile_ns * n_tile_pixels;
-}
-
-/* Tiles are mostly this wide. */
-static const double tile_px = 64.0;
-
-double conic_hybrid_tile_pixels(const conic_hybrid_camera *view, const conic_hybrid_cluster *cluster) {
+double conic_hybrid_cost(const conic_hybrid_camera *view, const conic_hybrid_cluster *cluster,
+                         const conic_hybrid_level *level) {
   sight seen = look_well_at(view, &cluster->bound);
-  double side = sqrt(pixels_of(view, (double)cluster->area, &seen)) + tile_px;
-  return side * side;
-}
-
-conic_hybrid_offer conic_hybrid_node_offer(const conic_hybrid *hybrid, const conic_hybrid_camera *view,
-                                           const conic_hybrid_node *node, double error_px) {
-  const conic_hybrid_level *levels = hybrid->levels + node->first_level;
-  sight seen = look_well_at(view, &node->bound);
-  conic_hybrid_offer best = {0, HUGE_VAL};
-  error_px = error_px < HUGE_VAL ? error_px : DBL_MAX; /* what reaches near, or has no point, is never joined */
-  if (conic_hybrid_point_error_px(view, node) <= error_px && conic_hybrid_point_change(view, node) <= view->color_error)
-    best = (conic_hybrid_offer){node->n_levels, conic_hybrid_point_cost(view, node)};
-  for (uint32_t k = 0; k < node->n_levels; k++) {
-    if (levels[k].kind != CONIC_HYBRID_SURFELS || !is_good(view, &seen, &levels[k], error_px))
-      continue;
-    double cost = cost_of_surfels(view, &levels[k], &seen);
-    if (cost < best.amount)
-      best = (conic_hybrid_offer){k, cost};
-  }
-  return best;
-}
-
-void conic_hybrid_offers(const conic_hybrid *hybrid, const conic_hybrid_camera *view,
-                         const conic_hybrid_cluster *cluster, double error_px, conic_hybrid_offer offers[2]) {
-  const conic_hybrid_level *levels = hybrid->levels + cluster->first_level;
-  sight seen = look_well_at(view, &cluster->bound);
-  offers[0] = offers[1] = (conic_hybrid_offer){0, HUGE_VAL};
-  for (uint32_t k = 0; k < cluster->n_levels; k++) {
-    conic_hybrid_offer *offer = &offers[levels[k].kind];
-    double cost = levels[k].kind == CONIC_HYBRID_TRIANGLES ? cost_of_triangles(view, cluster, &levels[k], &seen)
-                                                           : cost_of_surfels(view, &levels[k], &seen);
-    if (cost < offer->amount && is_good(view, &seen, &levels[k], error_px))
-      *offer = (conic_hybrid_offer){k, cost};
-  }
+  return level->kind == CONIC_HYBRID_TRIANGLES ? cost_of_triangles(view, cluster, level, &seen)
+                                               : cost_of_surfels(view, level, &seen);
 }
 
 uint32_t conic_hybrid_finest(const conic_hybrid *hybrid, const conic_hybrid_cluster *cluster, int only_kind) {
@@ -243,12 +190,6 @@ double conic_hybrid_point_error_px(const conic_hybrid_camera *view, const conic_
   return ((double)node->point.error + out) * conic_hybrid_pixels_a_unit(view, &node->bound, out);
 }
 
-double conic_hybrid_point_cost(const conic_hybrid_camera *view, const conic_hybrid_node *node) {
-  double way[3], distance, disc = radius_of_disc(view, node, way, &distance);
-  double side = view->focal_px * disc / distance;
-  return conic_hybrid_disc_cost(view, side * side);
-}
-
 void conic_hybrid_point_splat(const conic_hybrid_camera *view, const conic_hybrid_node *node, double cutoff,
                               float values[12]) {
   double way[3], distance, u[3], v[3], sigma = radius_of_disc(view, node, way, &distance) / cutoff;
@@ -261,29 +202,4 @@ void conic_hybrid_point_splat(const conic_hybrid_camera *view, const conic_hybri
     values[6 + axis] = (float)(sigma * v[axis]);
     values[9 + axis] = node->point.color[axis];
   }
-}
-
-/* --- nodes that stand at once --- */
-
-/* All of the sphere: what reaches out of the picture has clusters that take nothing. */
-static int is_all_in_sight(const conic_hybrid_camera *view, const conic_hybrid_bound *bound) {
-  double at[3], radius = (double)bound->radius * (1.0 + 1e-6);
-  int is_in = 1;
-  conic_viewpoint_move_floats(&view->from, bound->center, at);
-  for (int i = 0; i < 4; i++)
-    is_in &= conic_dot(view->from.side[i], at) >= radius;
-  return is_in && at[2] - radius > view->near_z;
-}
-
-int conic_hybrid_stands_at_once(const conic_hybrid *hybrid, const conic_hybrid_camera *view,
-                                const conic_hybrid_node *node, double error_px, conic_hybrid_offer *offer,
-                                double *saved_ns) {
-  double least_ns = CONIC_HYBRID_LEAST_NS * (double)(node->end - node->begin);
-  if (!is_all_in_sight(view, &node->bound))
-    return 0;
-  *offer = conic_hybrid_node_offer(hybrid, view, node, error_px);
-  if (!(offer->amount <= least_ns))
-    return 0;
-  *saved_ns += least_ns - offer->amount;
-  return 1;
 }

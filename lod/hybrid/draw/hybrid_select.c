@@ -33,12 +33,6 @@ static int is_together(const conic_hybrid_view *view) {
   return view->budget || view->error_px > 0.0;
 }
 
-static conic_status add_choice(const hybrid_selecting *s, hybrid_choice added) {
-  hybrid_scratch *kept = s->scratch;
-  return conic_memory_append(s->hybrid->context, &kept->choices, &kept->n_choices, &kept->choices_room, &added,
-                             sizeof added);
-}
-
 static conic_status add_cluster(const hybrid_selecting *s, uint32_t i_cluster) {
   const conic_hybrid_cluster *cluster = &s->hybrid->clusters[i_cluster];
   if (conic_hybrid_is_hidden(&s->camera, &cluster->bound, 0.0) &&
@@ -49,58 +43,31 @@ static conic_status add_cluster(const hybrid_selecting *s, uint32_t i_cluster) {
   uint32_t level = cluster->built;
   if (s->view->only_kind >= 0)
     level = conic_hybrid_finest(s->hybrid, cluster, s->view->only_kind);
-  return add_choice(
-      s, (hybrid_choice){.cluster = i_cluster, .level = cluster->first_level + level, .node = CONIC_HYBRID_NO_NODE});
+  const hybrid_choice added = {.cluster = i_cluster, .level = cluster->first_level + level};
+  return conic_memory_append(s->hybrid->context, &s->scratch->choices, &s->scratch->n_choices,
+                             &s->scratch->choices_room, &added, sizeof added);
 }
 
-/* All of a leaf's clusters, unless the node, a leaf or not, stands for all of them at once. */
-static conic_status add_node(const hybrid_selecting *s, uint32_t i, double *saved_ns, uint32_t *next) {
-  const conic_hybrid_node *node = &s->hybrid->nodes[i];
-  conic_hybrid_offer offer;
-  conic_status status = CONIC_OK;
-  if (saved_ns && conic_hybrid_stands_at_once(s->hybrid, &s->camera, node, s->view->error_px, &offer, saved_ns)) {
-    s->selection->n_joined += node->end - node->begin - 1; /* one is counted with the others that stand */
-    *next = node->next;
-    return add_choice(s, (hybrid_choice){.cluster = node->begin, .level = offer.level, .node = i});
-  }
-  s->scratch->seen[s->scratch->n_seen++] = i;
-  for (uint32_t k = node->begin; k < node->end && node->next == i + 1 && status == CONIC_OK; k++)
-    status = add_cluster(s, k);
-  *next = i + 1;
-  return status;
-}
-
-/* `saved_ns`: what nodes save that stand at once; null where none may. */
-static conic_status look_down(const hybrid_selecting *s, double *saved_ns) {
+/* All in sight. */
+static conic_status list_all(const hybrid_selecting *s) {
   const conic_hybrid *h = s->hybrid;
+  hybrid_scratch *kept = s->scratch;
   conic_status status = CONIC_OK;
-  s->scratch->n_choices = s->scratch->n_seen = s->selection->n_culled = s->selection->n_joined = 0;
+  kept->seen = conic_keep_room(h->context, &kept->seen_memory, h->n_nodes, sizeof *kept->seen);
+  if (!kept->seen)
+    return CONIC_ERROR_MEMORY;
+  kept->n_choices = kept->n_seen = s->selection->n_culled = s->selection->n_joined = 0;
   for (uint32_t i = 0; i < h->n_nodes && status == CONIC_OK;) {
     const conic_hybrid_node *node = &h->nodes[i];
     if (conic_hybrid_is_hidden(&s->camera, &node->bound, 0.0)) {
       s->selection->n_culled += node->end - node->begin;
       i = node->next;
-    } else
-      status = add_node(s, i, saved_ns, &i);
+      continue;
+    }
+    kept->seen[kept->n_seen++] = i++;
+    for (uint32_t k = node->begin; k < node->end && node->next == i && status == CONIC_OK; k++)
+      status = add_cluster(s, k);
   }
-  return status;
-}
-
-/* All in sight. Nodes stand at once only where that saves more than it takes to draw both kinds. */
-static conic_status choose_all(const hybrid_selecting *s) {
-  const conic_hybrid_view *view = s->view;
-  double saved_ns = 0.0, mixing_ns = view->only_kind == CONIC_HYBRID_SURFELS
-                                         ? 0.0
-                                         : conic_hybrid_mixing_ns(&s->camera, s->camera.n_pixels);
-  s->scratch->seen =
-      conic_keep_room(s->hybrid->context, &s->scratch->seen_memory, s->hybrid->n_nodes, sizeof *s->scratch->seen);
-  if (!s->scratch->seen)
-    return CONIC_ERROR_MEMORY;
-  if (!(view->error_px > 0.0) || view->only_kind == CONIC_HYBRID_TRIANGLES)
-    return look_down(s, NULL);
-  conic_status status = look_down(s, &saved_ns);
-  if (status == CONIC_OK && saved_ns > 0.0 && saved_ns < mixing_ns)
-    status = look_down(s, NULL);
   return status;
 }
 
@@ -134,43 +101,21 @@ static void note_stages(hybrid_selecting *s) {
     kept->stages[kept->choices[i].cluster] = s->hybrid->levels[kept->choices[i].level].stage;
 }
 
-/* The clusters that are yet to be chosen for; and the nodes that stand already. Returns how many clusters. */
-static size_t list_open(const hybrid_selecting *s, uint32_t *clusters, uint32_t *nodes) {
-  const hybrid_scratch *kept = s->scratch;
-  size_t n = 0;
-  for (size_t i = 0; i < s->hybrid->n_nodes; i++)
-    nodes[i] = CONIC_HYBRID_NO_NODE;
-  for (size_t i = 0; i < kept->n_choices; i++)
-    if (kept->choices[i].node == CONIC_HYBRID_NO_NODE)
-      clusters[n++] = kept->choices[i].cluster;
-    else
-      nodes[kept->choices[i].node] = kept->choices[i].level;
-  return n;
-}
-
 /* Gives choices what was chosen, and clusters their stages, which are 0 where nodes stand. */
 static void take_chosen(hybrid_selecting *s, const uint32_t *levels, const uint32_t *nodes) {
   const conic_hybrid *h = s->hybrid;
   hybrid_scratch *kept = s->scratch;
-  size_t n = 0;
-  for (size_t i = 0; i < kept->n_choices; i++) {
-    hybrid_choice *c = &kept->choices[i];
-    c->level = h->clusters[c->cluster].first_level;
-    if (c->node == CONIC_HYBRID_NO_NODE)
-      c->level += levels[n++];
-  }
+  for (size_t i = 0; i < kept->n_choices; i++)
+    kept->choices[i].level = h->clusters[kept->choices[i].cluster].first_level + levels[i];
   note_stages(s);
   conic_hybrid_find_standing(h, nodes, kept->standing);
-  for (size_t i = 0; i < kept->n_choices; i++) {
-    const hybrid_choice *c = &kept->choices[i];
-    uint32_t end = c->node == CONIC_HYBRID_NO_NODE ? c->cluster + 1 : h->nodes[c->node].end;
-    for (uint32_t k = c->cluster; k < end && kept->standing[k] != CONIC_HYBRID_NO_NODE; k++)
-      kept->stages[k] = 0;
-  }
+  for (size_t i = 0; i < kept->n_choices; i++)
+    if (kept->standing[kept->choices[i].cluster] != CONIC_HYBRID_NO_NODE)
+      kept->stages[kept->choices[i].cluster] = 0;
   let_nodes_stand(s, nodes);
 }
 
-/* Chooses for all clusters in sight, for a budget or for the least time. */
+/* Chooses for all clusters in sight, for a budget or for an error. */
 static conic_status choose_together(hybrid_selecting *s) {
   const conic_hybrid *h = s->hybrid;
   const conic_hybrid_view *view = s->view;
@@ -179,12 +124,11 @@ static conic_status choose_together(hybrid_selecting *s) {
   if (!clusters)
     return CONIC_ERROR_MEMORY;
   uint32_t *levels = clusters + kept->n_choices, *nodes = levels + kept->n_choices;
-  size_t n = list_open(s, clusters, nodes);
-  const conic_hybrid_choosing choosing = {h,        &s->camera, view->error_px, view->only_kind,
-                                          clusters, n,          kept->seen,     kept->n_seen};
-  conic_status status =
-      view->budget ? conic_hybrid_fit_budget(h, &s->camera, view->only_kind, view->budget, clusters, n, levels, nodes)
-                   : conic_hybrid_choose_levels(&choosing, levels, nodes);
+  for (size_t i = 0; i < kept->n_choices; i++)
+    clusters[i] = kept->choices[i].cluster;
+  const conic_hybrid_choosing choosing = {h,        &s->camera,      view->only_kind, view->error_px, view->budget,
+                                          clusters, kept->n_choices, kept->seen,      kept->n_seen};
+  conic_status status = conic_hybrid_choose_levels(&choosing, levels, nodes);
   if (status == CONIC_OK)
     take_chosen(s, levels, nodes);
   conic_memory_release(h->context, clusters);
@@ -373,7 +317,7 @@ conic_status conic_hybrid_select(const conic_hybrid *hybrid, const conic_camera 
   if (status == CONIC_OK)
     status = make_stages(&s);
   if (status == CONIC_OK)
-    status = choose_all(&s);
+    status = list_all(&s);
   if (status == CONIC_OK)
     status = hold_frames(&s);
   if (status != CONIC_OK)

@@ -7,11 +7,9 @@
 #include "lod/hybrid/model/hybrid_chunks.h"
 
 /* A cluster that is drawn, or a node, and where its parts go. The numbers of nodes follow those of clusters. The level
- * is counted among all of the model's; a node's point is none of them. While choosing, a node that stands at once has
- * the number of its first cluster, and its own level. */
+ * is counted among all of the model's; a node's point is none of them. */
 typedef struct hybrid_choice {
   uint32_t cluster, level;
-  uint32_t node; /* that stands at once, or NO_NODE */
   size_t splat, triangle, vertex;
   size_t n_put; /* into the triangles, so that they fit their neighbours */
 } hybrid_choice;
@@ -20,7 +18,7 @@ typedef struct hybrid_choice {
 typedef struct hybrid_scratch {
   hybrid_choice *choices;
   size_t n_choices, choices_room;
-  uint32_t *seen; /* nodes in sight that neither stand at once nor lie below one that does */
+  uint32_t *seen; /* nodes in sight */
   size_t n_seen;
   conic_kept_memory seen_memory;
   uint32_t *stages;   /* of each cluster of the hybrid: that of its level */

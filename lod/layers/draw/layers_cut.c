@@ -1,6 +1,7 @@
 #include "lod/layers/draw/layers_cut.h"
 
 #include "core/base/base.h"
+#include "lod/planner/plan.h"
 
 /* A walk down the tree: what is yet to be looked at. Each level adds one node at most, of an octree seven. */
 enum { MOST_OPEN = 7 * CONIC_HIERARCHY_LEVELS + 2 };
@@ -89,41 +90,54 @@ void conic_layers_cut_release(conic_context *context, conic_layers_cut *cut) {
   memset(cut, 0, sizeof *cut);
 }
 
-/* Splats of the cut for an error, counted up to a little over `most`. */
-static uint64_t count_cut(const conic_layers *layers, const conic_layers_view *view, const conic_layers_wish *wish,
-                          uint64_t most) {
-  tree_walk w = {.layers = layers, .view = view, .wish = wish};
-  conic_layers_sight sight;
-  uint64_t n = 0;
+typedef struct layers_opening {
+  const conic_layers *layers;
+  const conic_layers_view *view;
+  int most_levels;
+} layers_opening;
+
+/* A node that is yet to be looked at, and what is above it. */
+typedef struct budget_place {
   uint32_t node;
-  verdict why;
-  begin_walk(&w);
-  while (n <= most && next_place(&w, &node, &sight, &why))
-    n += layers->entries[node].n_drawn;
+  double px;        /* the least of the errors above */
+  size_t i_opening; /* of the node above; SIZE_MAX: none */
+} budget_place;
+
+static size_t open_places(const void *data, double low_px, conic_plan_opening *openings, uint64_t *n_first) {
+  const layers_opening *o = data;
+  const conic_layers *layers = o->layers;
+  const conic_layers_wish wish = {.error_px = low_px, .most_levels = o->most_levels};
+  const tree_walk w = {.layers = layers, .view = o->view, .wish = &wish};
+  budget_place open[sizeof w.open / sizeof *w.open] = {{0, HUGE_VAL, SIZE_MAX}};
+  size_t n = 0;
+  *n_first = 0;
+  for (int n_open = 1; n_open > 0;) {
+    const budget_place place = open[--n_open];
+    const conic_layers_entry *entry = &layers->entries[place.node];
+    conic_layers_sight sight;
+    if (!conic_layers_look(o->view, entry, &sight))
+      continue;
+    if (place.i_opening == SIZE_MAX)
+      *n_first = entry->n_drawn;
+    else
+      openings[place.i_opening].change += entry->n_drawn;
+    if (judge_node(&w, entry, &sight) != VERDICT_REFINE)
+      continue;
+    double px = sight.error_px < place.px ? sight.error_px : place.px;
+    for (uint32_t i = conic_layers_children(layers); i-- > 0;)
+      open[n_open++] = (budget_place){entry->child + i, px, n};
+    openings[n++] = (conic_plan_opening){px, -(int64_t)entry->n_drawn};
+  }
   return n;
 }
 
-/* Doubles that are not negative order like their bits. */
-uint64_t conic_layers_fit_budget(const conic_layers *layers, const conic_layers_view *view, int most_levels,
-                                 uint64_t budget, double *error_px) {
-  conic_layers_wish wish = {.error_px = 0.0, .most_levels = most_levels};
-  uint64_t low = 0, high = conic_bits_of_double(HUGE_VAL);
-  *error_px = 0.0;
-  if (count_cut(layers, view, &wish, budget) <= budget)
-    return 0;
-  wish.error_px = *error_px = HUGE_VAL;
-  if (count_cut(layers, view, &wish, budget) > budget)
-    return budget;
-  while (high - low > 1) {
-    uint64_t middle = low + (high - low) / 2;
-    wish.error_px = conic_double_of_bits(middle);
-    if (count_cut(layers, view, &wish, budget) <= budget)
-      high = middle;
-    else
-      low = middle;
-  }
-  *error_px = conic_double_of_bits(high);
-  return 0;
+conic_status conic_layers_fit_budget(const conic_layers *layers, const conic_layers_view *view, int most_levels,
+                                     uint64_t budget, double *error_px, uint64_t *n_root) {
+  const layers_opening opening = {layers, view, most_levels};
+  const conic_plan_tree tree = {&opening, layers->header.n_clouds, open_places};
+  conic_status status = conic_plan_fit_tree(layers->context, &tree, budget, error_px);
+  *n_root = status == CONIC_OK && !(*error_px < HUGE_VAL) && layers->entries[0].n_drawn > budget ? budget : 0;
+  return status;
 }
 
 size_t conic_layers_mark_needed(const conic_layers *layers, const conic_layers_place *place, unsigned char *needed) {

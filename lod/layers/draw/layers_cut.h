@@ -55,9 +55,10 @@ conic_status conic_layers_find_cut(const conic_layers *layers, const conic_layer
                                    const conic_layers_wish *wish, conic_layers_cut *cut);
 
 /* Finds the least error for which the cut has no more than `budget` splats. Where the root alone has more, the error is
- * infinite. Returns how many of the root's samples are to be drawn then; else 0, for all of the cut's. */
-uint64_t conic_layers_fit_budget(const conic_layers *layers, const conic_layers_view *view, int most_levels,
-                                 uint64_t budget, double *error_px);
+ * infinite, and *n_root how many of its samples are to be drawn then; else that is 0, for all of the cut's. Errors:
+ * MEMORY. */
+conic_status conic_layers_fit_budget(const conic_layers *layers, const conic_layers_view *view, int most_levels,
+                                     uint64_t budget, double *error_px, uint64_t *n_root);
 
 void conic_layers_cut_release(conic_context *context, conic_layers_cut *cut);
 

@@ -55,11 +55,13 @@ static conic_status choose_clouds(conic_layers_picture *d, const unsigned char *
 }
 
 static conic_status choose_first(conic_layers_picture *d) {
-  d->drawn.error_px = d->options.error_px;
-  if (d->options.budget)
-    d->n_root =
-        conic_layers_fit_budget(d->layers, &d->view, d->options.most_levels, d->options.budget, &d->drawn.error_px);
-  return choose_clouds(d, NULL);
+  const conic_layers_draw_options *options = &d->options;
+  conic_status status = CONIC_OK;
+  d->drawn.error_px = options->error_px;
+  if (options->budget)
+    status = conic_layers_fit_budget(d->layers, &d->view, options->most_levels, options->budget, &d->drawn.error_px,
+                                     &d->n_root);
+  return status == CONIC_OK ? choose_clouds(d, NULL) : status;
 }
 
 /* Ranks the clouds that are needed where time may run out: first what makes the largest errors on the screen smaller.

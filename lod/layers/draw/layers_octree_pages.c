@@ -135,9 +135,10 @@ static size_t list_pages(const conic_layers *layers, const conic_layers_cut *cut
 static conic_status find_pages(conic_layers *layers, const conic_layers_view *view, const conic_layers_expansion *e,
                                conic_layers_cut *cut) {
   conic_layers_wish wish = {.error_px = e->error_px, .most_levels = e->most_levels};
+  conic_status status = CONIC_OK;
   if (e->budget)
-    wish.n_root = conic_layers_fit_budget(layers, view, e->most_levels, e->budget, &wish.error_px);
-  return conic_layers_find_cut(layers, view, &wish, cut);
+    status = conic_layers_fit_budget(layers, view, e->most_levels, e->budget, &wish.error_px, &wish.n_root);
+  return status == CONIC_OK ? conic_layers_find_cut(layers, view, &wish, cut) : status;
 }
 
 conic_status conic_layers_octree_expand(conic_layers *layers, const conic_layers_view *view,

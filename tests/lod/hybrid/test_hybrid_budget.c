@@ -110,6 +110,14 @@ static size_t fewest_below(const spending *s, const conic_hybrid_camera *view, u
   return own;
 }
 
+/* Of as many, what is drawn faster. */
+static int is_own_level(const conic_hybrid_camera *view, const conic_hybrid_cluster *cluster,
+                        const conic_hybrid_level *level, const conic_hybrid_level *chosen) {
+  return !chosen || level->count < chosen->count ||
+         (level->count == chosen->count &&
+          conic_hybrid_cost(view, cluster, level) < conic_hybrid_cost(view, cluster, chosen));
+}
+
 /* How few primitives, with those that fit them to each other, keep every seen cluster's error on the screen at or below
  * `error_px`; where surfels alone are asked for and none are good enough, the finest count. `next` becomes the least
  * error above it that any level has. */
@@ -119,8 +127,7 @@ static size_t fewest(const spending *s, const conic_hybrid_camera *view, int onl
   *next = HUGE_VAL;
   for (size_t i = 0; i < s->info.n_clusters; i++) {
     const conic_hybrid_cluster *cluster = &s->hybrid->clusters[i];
-    size_t least = SIZE_MAX, finest = 0;
-    double least_error = HUGE_VAL;
+    size_t finest = 0;
     const conic_hybrid_level *chosen = NULL, *first = NULL;
     for (uint32_t k = cluster->n_levels; s->is_seen[i] && k-- > 0;) {
       const conic_hybrid_level *level = &s->hybrid->levels[cluster->first_level + k];
@@ -129,16 +136,11 @@ static size_t fewest(const spending *s, const conic_hybrid_camera *view, int onl
         continue;
       finest = level->count;
       first = level;
-      if (error <= error_px) {
-        if (level->count < least || (level->count == least && error <= least_error)) { /* of as many, the better */
-          chosen = level;
-          least = level->count;
-          least_error = error;
-        }
-      }
+      if (error <= error_px && is_own_level(view, cluster, level, chosen))
+        chosen = level;
       note(error, error_px, next);
     }
-    s->counts[i] = least < SIZE_MAX ? least : finest;
+    s->counts[i] = chosen ? chosen->count : finest;
     count += s->counts[i];
     s->chosen[i] = chosen ? chosen : first;
     s->stages[i] = s->chosen[i] ? s->chosen[i]->stage : CONIC_HYBRID_HIDDEN;
@@ -234,7 +236,7 @@ static void check_nodes(spending *s) {
     CHECK(s->selection.splat_cluster[i] < s->info.n_clusters + s->info.n_nodes);
   size_t n = n_selected(s);
   CHECK_OK(select_with(s, CONIC_HYBRID_TRIANGLES, 40.0, 0));
-  CHECK(s->selection.n_joined == 0 && s->selection.splats.count == 0);
+  CHECK(s->selection.splats.count == 0 && n_selected(s) >= n);
   CHECK_OK(select_with(s, CONIC_HYBRID_SURFELS, 40.0, 0));
   CHECK(s->selection.n_joined > 0 && s->selection.triangles.count == 0);
   CHECK_OK(select_with(s, -1, 0.0, n)); /* as many do no worse */
