@@ -2,7 +2,6 @@
 
 #include "core/base/base.h"
 
-#include "core/base/base.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
 #include "core/splats/ellipse.h"
