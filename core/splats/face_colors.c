@@ -40,10 +40,12 @@ static conic_status find_material(conic_context *context, conic_face_colors *col
 
 static conic_status add_to_vertices(conic_context *context, conic_face_colors *colors, const conic_model *model,
                                     size_t first, const double linear[3]) {
-  if (!colors->sums)
-    colors->sums = conic_memory_allocate_zeroed(context, model->points.count, sizeof *colors->sums);
-  if (!colors->sums)
+  const size_t n_before = colors->n_sums;
+  if (conic_memory_reserve(context, &colors->sums, n_before, model->points.count, &colors->n_sums,
+                           sizeof *colors->sums) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
+  if (colors->n_sums > n_before)
+    memset(colors->sums + n_before, 0, (colors->n_sums - n_before) * sizeof *colors->sums);
   for (size_t i = 3 * first; i < 3 * model->n_triangles; i++) {
     float *sum = colors->sums[model->triangles[i / 3][i % 3]];
     for (int channel = 0; channel < 3; channel++)
@@ -65,8 +67,9 @@ conic_status conic_face_colors_finish(conic_builder *builder, conic_face_colors 
     status = conic_builder_add_field(builder, CONIC_SPLATS_COLORS);
   for (size_t i = 0; status == CONIC_OK && colors->sums && i < points->count; i++)
     for (int channel = 0; channel < 3; channel++)
-      points->color[channel][i] = colors->sums[i][3] > 0.0f ? colors->sums[i][channel] / colors->sums[i][3] : 1.0f;
+      points->color[channel][i] =
+          i < colors->n_sums && colors->sums[i][3] > 0.0f ? colors->sums[i][channel] / colors->sums[i][3] : 1.0f;
   conic_memory_release_these(builder->context, colors->table, colors->sums);
-  *colors = (conic_face_colors){NULL, NULL};
+  *colors = (conic_face_colors){NULL, NULL, 0};
   return status;
 }

@@ -9,6 +9,7 @@
 typedef struct conic_face_colors {
   uint32_t *table;  /* of codes of 24 bits and their materials, by hash */
   float (*sums)[4]; /* a vertex: of colours, and how many */
+  size_t n_sums;
 } conic_face_colors;
 
 /* Takes the linear colour of the model's triangles from `first` on, before they are added to its faces, whose current
