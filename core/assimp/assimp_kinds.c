@@ -71,10 +71,6 @@ static int is_stl(const char *bytes, size_t n, uint64_t size) {
   return size == UINT64_MAX ? has_stl_faces(bytes, n) : size == 84 + 50 * number_at(bytes, 80);
 }
 
-int conic_assimp_is_binary(const void *bytes, uint64_t n) {
-  return is_stl(bytes, n < 134 ? 0 : 134, n);
-}
-
 /* Binary files whose length must be what they say. */
 static int has_length(const char *bytes, size_t n, uint64_t size, conic_model_kind *kind) {
   if (is_stl(bytes, n, size))

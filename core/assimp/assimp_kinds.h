@@ -5,9 +5,9 @@
 #include "conic/model.h"
 #include "core/base/base.h"
 
-/* Whether a kind is one of Assimp's; its name is also the ending of its files. */
+/* Whether a kind is one of Assimp's. */
 static inline int conic_assimp_reads(conic_model_kind kind) {
-  return kind >= CONIC_MODEL_STL && kind <= CONIC_MODEL_AMF;
+  return kind >= CONIC_MODEL_GLTF && kind <= CONIC_MODEL_AMF;
 }
 
 /* Tells the kind by the first `n` bytes of a file of `size` (UINT64_MAX: not known). The bytes must be certain, or be
@@ -16,9 +16,6 @@ int conic_assimp_find_content(const char *path, const char *bytes, size_t n, uin
 
 /* Whether a text is somewhere in bytes. */
 int conic_assimp_has_text(const void *bytes, size_t n, const char *text);
-
-/* Whether the bytes are a whole binary STL, by the length that it says. */
-int conic_assimp_is_binary(const void *bytes, uint64_t n);
 
 /* Tells the kind by the name's ending. */
 int conic_assimp_find_ending(const char *path, conic_model_kind *kind);

@@ -43,34 +43,6 @@ static conic_status read_texture_file(const conic_input *input, const char *path
   return conic_texture_take(context, &image, wrap, texture);
 }
 
-/* A name as files spell it: of a URI, with %20 and the like; of Windows, with \. */
-static void make_plain(char *name) {
-  char *to = name;
-  if (strncmp(name, "file://", 7) == 0)
-    memmove(name, name + 7, strlen(name) - 6);
-  for (const char *from = name; *from; from++, to++) {
-    char digits[3] = {from[0] == '%' ? from[1] : '\0', from[0] == '%' && from[1] ? from[2] : '\0', '\0'}, *end;
-    long code = strtol(digits, &end, 16);
-    int is_code = end == digits + 2 && code > 0;
-    *to = is_code ? (char)code : *from == '\\' ? '/' : *from;
-    from += is_code ? 2 : 0;
-  }
-  *to = '\0';
-}
-
-/* Looks at the file's own path first, then beside the model, since such paths are often another machine's. */
-static int find_texture_file(const conic_input *input, const char *name, char path[LONGEST_PATH]) {
-  char plain[CONIC_INPUT_LONGEST_WORD];
-  snprintf(plain, sizeof plain, "%s", name);
-  if (conic_input_beside(input, name, strlen(name), path, LONGEST_PATH) && conic_file_is_there(path))
-    return 1;
-  make_plain(plain);
-  if (conic_input_beside(input, plain, strlen(plain), path, LONGEST_PATH) && conic_file_is_there(path))
-    return 1;
-  const char *slash = strrchr(plain, '/'), *last = slash ? slash + 1 : plain;
-  return *last && conic_input_beside(input, last, strlen(last), path, LONGEST_PATH) && conic_file_is_there(path);
-}
-
 static conic_status take_path(const conic_input *input, conic_assimp_process *process, uint64_t n_bytes,
                               conic_texture_wrap wrap, conic_texture **texture) {
   char name[CONIC_INPUT_LONGEST_WORD] = "", path[LONGEST_PATH];
@@ -79,7 +51,7 @@ static conic_status take_path(const conic_input *input, conic_assimp_process *pr
   conic_status status = conic_assimp_process_take(process, name, (size_t)n_bytes);
   if (status != CONIC_OK)
     return status;
-  if (find_texture_file(input, name, path))
+  if (conic_input_find(input, name, strlen(name), path, sizeof path))
     return read_texture_file(input, path, path, wrap, texture);
   conic_log(input->context, CONIC_LOG_WARNING, "%s: the texture %s is not there, and is left out", input->name, name);
   return CONIC_OK;

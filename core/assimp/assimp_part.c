@@ -36,7 +36,7 @@ conic_status conic_assimp_parts_begin(conic_context *context, const char *name, 
 }
 
 void conic_assimp_parts_release(conic_assimp_part_builder *parts) {
-  conic_memory_release_these(parts->context, parts->slots, parts->normals);
+  conic_memory_release_these(parts->context, parts->slots.slots, parts->normals);
 }
 
 static void release_part(conic_context *context, assimp_part *taken) {
@@ -77,67 +77,6 @@ static conic_status take_part_arrays(conic_assimp_process *process, const conic_
   return status;
 }
 
-/* The bits of a number, with -0 as 0. */
-static uint32_t bits_of(float value) {
-  uint32_t bits;
-  memcpy(&bits, &value, sizeof bits);
-  return value == 0.0f ? 0 : bits;
-}
-
-static uint32_t color_bits(const conic_splats *points, int channel, size_t i) {
-  return bits_of(points->color[channel] ? points->color[channel][i] : 1.0f);
-}
-
-static uint32_t alpha_bits(const conic_splats *points, size_t i) {
-  return bits_of(points->opacity ? points->opacity[i] : 1.0f);
-}
-
-static size_t hash_point(const conic_splats *points, size_t i) {
-  uint64_t hash = alpha_bits(points, i);
-  for (int axis = 0; axis < 3; axis++) {
-    hash = (hash ^ bits_of(points->position[axis][i])) * UINT64_C(0x9E3779B97F4A7C15);
-    hash = (hash ^ hash >> 29 ^ color_bits(points, axis, i)) * UINT64_C(0xBF58476D1CE4E5B9);
-  }
-  return (size_t)(hash ^ hash >> 32);
-}
-
-static int is_same_point(const conic_splats *points, size_t i, size_t j) {
-  for (int axis = 0; axis < 3; axis++)
-    if (bits_of(points->position[axis][i]) != bits_of(points->position[axis][j]) ||
-        color_bits(points, axis, i) != color_bits(points, axis, j))
-      return 0;
-  return alpha_bits(points, i) == alpha_bits(points, j);
-}
-
-/* The slot of the point like this one, or the free one for it. */
-static uint32_t *find_slot(const conic_assimp_part_builder *parts, size_t i) {
-  const conic_splats *points = &parts->builder.model->points;
-  size_t slot = hash_point(points, i) & (parts->n_slots - 1);
-  while (parts->slots[slot] && !is_same_point(points, parts->slots[slot] - 1, i))
-    slot = (slot + 1) & (parts->n_slots - 1);
-  return &parts->slots[slot];
-}
-
-/* Makes room for so many points at half load. Points of parts without triangles have no slot. */
-static conic_status reserve_slots(conic_assimp_part_builder *parts, size_t count) {
-  size_t n_slots = 1024, n_old = parts->n_slots;
-  uint32_t *old = parts->slots;
-  while (n_slots < 2 * count)
-    n_slots *= 2;
-  if (n_slots <= n_old)
-    return CONIC_OK;
-  uint32_t *slots = conic_memory_allocate_zeroed(parts->context, n_slots, sizeof *slots);
-  if (!slots)
-    return CONIC_ERROR_MEMORY;
-  parts->slots = slots;
-  parts->n_slots = n_slots;
-  for (size_t i = 0; i < n_old; i++)
-    if (old[i])
-      *find_slot(parts, old[i] - 1) = old[i];
-  conic_memory_release(parts->context, old);
-  return CONIC_OK;
-}
-
 /* The point of a vertex: an earlier one, or a new one of the model. */
 static uint32_t add_vertex(conic_assimp_part_builder *parts, const assimp_part *taken, size_t i) {
   conic_splats *points = &parts->builder.model->points;
@@ -147,12 +86,8 @@ static uint32_t add_vertex(conic_assimp_part_builder *parts, const assimp_part *
     points->color[channel][next] = taken->color ? conic_assimp_decode(parts, taken->color[i][channel]) : 1.0f;
   if (points->opacity)
     points->opacity[next] = taken->alpha ? taken->alpha[i] : 1.0f;
-  if (taken->n_triangles) {
-    uint32_t *slot = find_slot(parts, next);
-    if (*slot)
-      return *slot - 1;
-    *slot = (uint32_t)next + 1;
-  }
+  if (taken->n_triangles) /* points of parts without triangles have no slot */
+    return conic_point_slots_join(&parts->builder, &parts->slots);
   points->count++;
   return (uint32_t)next;
 }
@@ -167,7 +102,7 @@ static conic_status add_vertices(conic_assimp_part_builder *parts, assimp_part *
   if (status == CONIC_OK && taken->alpha)
     status = conic_builder_add_field(&parts->builder, CONIC_SPLATS_OPACITIES);
   if (status == CONIC_OK && taken->n_triangles)
-    status = reserve_slots(parts, count);
+    status = conic_point_slots_reserve(&parts->builder, &parts->slots, count);
   if (status != CONIC_OK)
     return status;
   taken->point = conic_memory_allocate(parts->context, taken->n_vertices, sizeof *taken->point);

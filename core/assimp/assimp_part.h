@@ -7,6 +7,7 @@
 #include "core/files/input.h"
 #include "core/splats/builder.h"
 #include "core/splats/faces.h"
+#include "core/splats/point_slots.h"
 
 typedef struct conic_assimp_part_builder {
   conic_context *context;
@@ -14,8 +15,7 @@ typedef struct conic_assimp_part_builder {
   conic_builder builder;
   conic_faces *faces; /* the model's, where faces are kept */
   int is_linear;      /* the file's colours are linear; else they are sRGB-encoded */
-  uint32_t *slots;    /* by place, colour and alpha: a point + 1; 0: none */
-  size_t n_slots;     /* a power of two */
+  conic_point_slots slots;
   double (*normals)[3];
   size_t normal_room; /* for the sums of the corners' normals at each point */
   int has_normals;

@@ -128,21 +128,12 @@ conic_status conic_assimp_read_records(const conic_input *input, conic_assimp_pr
   return status;
 }
 
-/* Assimp reads cut texts as far as they go: warns where the last bytes lack the closing word. */
+/* Assimp reads cut texts as far as they go. */
 static void warn_if_cut(const conic_input *input, conic_model_kind kind, const whole_file *file) {
-  static const struct {
-    conic_model_kind kind;
-    const char *start, *end;
-  } texts[] = {{CONIC_MODEL_STL, "solid", "endsolid"}, {CONIC_MODEL_DXF, "", "EOF"}};
-  size_t i = 0, n_last = file->n_bytes < 300 ? file->n_bytes : 300;
-  while (i < sizeof texts / sizeof *texts && texts[i].kind != kind)
-    i++;
-  if (i == sizeof texts / sizeof *texts || conic_assimp_is_binary(file->bytes, file->n_bytes) ||
-      !conic_assimp_has_text(file->bytes, n_last, texts[i].start) ||
-      conic_assimp_has_text(file->bytes + file->n_bytes - n_last, n_last, texts[i].end))
-    return;
-  conic_log(input->context, CONIC_LOG_WARNING, "%s: the file ends without %s: only a part of it may be there",
-            input->name, texts[i].end);
+  size_t n_last = file->n_bytes < 300 ? file->n_bytes : 300;
+  if (kind == CONIC_MODEL_DXF && !conic_assimp_has_text(file->bytes + file->n_bytes - n_last, n_last, "EOF"))
+    conic_log(input->context, CONIC_LOG_WARNING, "%s: the file ends without EOF: only a part of it may be there",
+              input->name);
 }
 
 static conic_status start_process(const conic_input *input, const conic_assimp_bridge_functions *bridge,

@@ -3,6 +3,8 @@
 #include <stdarg.h>
 #include <unistd.h>
 
+#include <stdlib.h>
+
 #include "core/base/base.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
@@ -262,6 +264,15 @@ conic_status conic_input_word(conic_input *input, const char **word, size_t *len
   return CONIC_OK;
 }
 
+conic_status conic_input_rest(conic_input *input, const char **text, size_t *length) {
+  conic_status status = skip_blanks(input);
+  if (status == CONIC_OK)
+    status = conic_input_line(input, text, length);
+  while (status == CONIC_OK && *length > 0 && is_blank((*text)[*length - 1]))
+    --*length;
+  return status;
+}
+
 conic_status conic_input_wrong(const conic_input *input, const char *format, ...) {
   char what[1024];
   va_list arguments;
@@ -276,6 +287,38 @@ size_t conic_input_beside(const conic_input *input, const char *file, size_t len
   int folder = conic_disk_is_absolute(file) ? 0 : (int)(conic_file_name(input->name) - input->name);
   int n = snprintf(path, room, "%.*s%.*s", folder, input->name, (int)length, file);
   return n > 0 && (size_t)n < room ? (size_t)n : 0;
+}
+
+/* A name as files spell it: of a URI, with %20 and the like; of Windows, with \. */
+static void make_plain(char *name) {
+  char *to = name;
+  if (strncmp(name, "file://", 7) == 0)
+    memmove(name, name + 7, strlen(name) - 6);
+  for (const char *from = name; *from; from++, to++) {
+    char digits[3] = {from[0] == '%' ? from[1] : '\0', from[0] == '%' && from[1] ? from[2] : '\0', '\0'}, *end;
+    long code = strtol(digits, &end, 16);
+    int is_code = end == digits + 2 && code > 0;
+    *to = is_code ? (char)code : *from == '\\' ? '/' : *from;
+    from += is_code ? 2 : 0;
+  }
+  *to = '\0';
+}
+
+static int is_beside(const conic_input *input, const char *name, char *path, size_t room) {
+  return *name && conic_input_beside(input, name, strlen(name), path, room) && conic_file_is_there(path);
+}
+
+int conic_input_find(const conic_input *input, const char *name, size_t length, char *path, size_t room) {
+  char plain[CONIC_INPUT_LONGEST_WORD + 1];
+  snprintf(plain, sizeof plain, "%.*s", (int)length, name);
+  if (is_beside(input, plain, path, room))
+    return 1;
+  make_plain(plain);
+  const char *slash = strrchr(plain, '/');
+  if (is_beside(input, plain, path, room) || (slash && is_beside(input, slash + 1, path, room)))
+    return 1;
+  conic_input_beside(input, name, length, path, room);
+  return 0;
 }
 
 conic_status conic_input_next_line(conic_input *input, int *is_done) {

@@ -75,12 +75,20 @@ conic_status conic_input_line(conic_input *input, const char **text, size_t *len
  * carriage returns separate words. Errors: as fill, and INPUT (longer than CONIC_INPUT_LONGEST_WORD). */
 conic_status conic_input_word(conic_input *input, const char **word, size_t *length);
 
+/* The rest of the line without the blanks at both ends, as a name that may have some within. Valid until the next call;
+ * conic_input_next_line skips it. Errors: as conic_input_line. */
+conic_status conic_input_rest(conic_input *input, const char **text, size_t *length);
+
 /* Logs "FILE: what is wrong (line N)" for the current line, and returns INPUT. */
 conic_status conic_input_wrong(const conic_input *input, const char *format, ...) CONIC_AS_PRINTF(2, 3);
 
 /* "FOLDER/file" beside the file that is read, or `file` itself if it begins at the root. Returns the length, or 0 where
  * the room is too small. */
 size_t conic_input_beside(const conic_input *input, const char *file, size_t length, char *path, size_t room);
+
+/* The path of a file that the file names: as it is written, else with %20 and \ read as a blank and /, else the last
+ * part of it, since such paths are often another machine's. Returns 0 where there is none, after the first of these. */
+int conic_input_find(const conic_input *input, const char *name, size_t length, char *path, size_t room);
 
 /* What is done after a line's first word. */
 typedef struct conic_input_statement {

@@ -19,7 +19,7 @@ static conic_status read_name(void *data) {
   material_reader *reader = data;
   const char *word;
   size_t length;
-  conic_status status = conic_input_word(&reader->input, &word, &length);
+  conic_status status = conic_input_rest(&reader->input, &word, &length);
   if (status != CONIC_OK)
     return status;
   size_t i = conic_texts_find(reader->names, word, length);
@@ -71,32 +71,57 @@ static conic_status read_transparency(void *data) {
   return read_material_part(data, 0);
 }
 
-/* [-option value …] FILE: the file is the last word; of the options only `-clamp on` matters here. The path is empty
- * where there is no such file. */
+/* How many values an option of a picture has at most; -1 where the word is no option. Of -o, -s and -t, which may have
+ * one to three, only numbers are taken for them. */
+static int count_values(const char *word, size_t length) {
+  static const struct {
+    const char *name;
+    int n;
+  } known[] = {{"-o", 3},  {"-s", 3},     {"-t", 3},       {"-mm", 2}, {"-blendu", 1}, {"-blendv", 1}, {"-clamp", 1},
+               {"-bm", 1}, {"-boost", 1}, {"-imfchan", 1}, {"-cc", 1}, {"-texres", 1}, {"-type", 1}};
+  for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
+    if (conic_input_is(word, length, known[i].name))
+      return known[i].n;
+  return -1;
+}
+
+/* Passes over [-option value …]; of these only `-clamp on` matters here. */
+static void skip_options(const char **text, size_t *length, conic_texture_wrap *wrap) {
+  for (int left = 0, is_clamp = 0; *length > 0;) {
+    size_t n = 0, next;
+    double number;
+    while (n < *length && (*text)[n] != ' ' && (*text)[n] != '\t')
+      n++;
+    for (next = n; next < *length && ((*text)[next] == ' ' || (*text)[next] == '\t');)
+      next++;
+    int n_values = count_values(*text, n), is_number = conic_number_parse(*text, n, &number) == n;
+    if (n_values < 0 && (left == 0 || (left != 1 && !is_number) || next == *length))
+      return; /* the name begins */
+    if (n_values < 0 && is_clamp && conic_input_is(*text, n, "on"))
+      *wrap = CONIC_WRAP_CLAMP;
+    is_clamp = conic_input_is(*text, n, "-clamp");
+    left = n_values >= 0 ? n_values : left - 1;
+    *text += next;
+    *length -= next;
+  }
+}
+
+/* [-option value …] FILE, whose name may have blanks. The path is empty where there is no such file. */
 static conic_status read_path(material_reader *reader, conic_texture_wrap *wrap,
                               char path[2 * CONIC_INPUT_LONGEST_WORD]) {
-  char file[CONIC_INPUT_LONGEST_WORD + 1] = "";
-  int is_clamp_next = 0;
+  const char *name;
+  size_t length;
   *wrap = CONIC_WRAP_REPEAT;
   path[0] = '\0';
-  for (;;) {
-    const char *word;
-    size_t length;
-    conic_status status = conic_input_word(&reader->input, &word, &length);
-    if (status != CONIC_OK)
-      return status;
-    if (length == 0)
-      break;
-    if (is_clamp_next && conic_input_is(word, length, "on"))
-      *wrap = CONIC_WRAP_CLAMP;
-    is_clamp_next = conic_input_is(word, length, "-clamp");
-    snprintf(file, sizeof file, "%.*s", (int)length, word);
-  }
-  if (!file[0] || !reader->current)
+  conic_status status = conic_input_rest(&reader->input, &name, &length);
+  if (status != CONIC_OK)
+    return status;
+  skip_options(&name, &length, wrap);
+  if (length == 0 || !reader->current)
     return CONIC_OK;
-  if (!conic_input_beside(&reader->input, file, strlen(file), path, 2 * CONIC_INPUT_LONGEST_WORD))
+  if (length > CONIC_INPUT_LONGEST_WORD)
     return conic_input_wrong(&reader->input, "a picture's name is too long");
-  if (conic_file_is_there(path))
+  if (conic_input_find(&reader->input, name, length, path, 2 * CONIC_INPUT_LONGEST_WORD))
     return CONIC_OK;
   conic_log(reader->input.context, CONIC_LOG_WARNING, "%s: the texture %s is not there, and is left out (line %llu)",
             reader->input.name, path, (unsigned long long)reader->input.line);

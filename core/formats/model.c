@@ -118,7 +118,7 @@ static conic_status (*const readers[])(conic_input *, const conic_read_options *
                                        conic_model *) = {
     [CONIC_MODEL_PLY] = conic_ply_read, [CONIC_MODEL_OBJ] = conic_obj_read, [CONIC_MODEL_XYZ] = conic_xyz_read,
     [CONIC_MODEL_LAS] = conic_las_read, [CONIC_MODEL_PCD] = conic_pcd_read, [CONIC_MODEL_E57] = conic_e57_read,
-    [CONIC_MODEL_PTX] = conic_ptx_read};
+    [CONIC_MODEL_PTX] = conic_ptx_read, [CONIC_MODEL_STL] = conic_stl_read, [CONIC_MODEL_OFF] = conic_off_read};
 
 conic_status conic_model_read_kind(conic_input *input, conic_model_kind kind, const conic_read_options *options,
                                    const conic_delivery *delivery, conic_model *model) {

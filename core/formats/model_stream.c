@@ -1,6 +1,5 @@
 #include <unistd.h>
 
-#include "core/assimp/assimp_kinds.h"
 #include "core/base/base.h"
 #include "core/formats/model_part.h"
 #include "core/formats/model_read.h"
@@ -125,10 +124,13 @@ conic_status conic_model_stream(conic_context *context, const char *path, const 
   if (status != CONIC_OK)
     return status;
   int is_pipe = input.descriptor == STDIN_FILENO || !input.has_size;
+  conic_model_shape shape = {0};
   status = conic_model_find_kind(&input, path, &s.kind);
-  if (status == CONIC_OK && s.kind == CONIC_MODEL_PLY)
+  if (status == CONIC_OK && s.kind == CONIC_MODEL_PLY && !is_pipe)
+    status = conic_model_look(context, path, options, &shape);
+  if (status == CONIC_OK && s.kind == CONIC_MODEL_PLY && !shape.needs_survey)
     status = pass(&s, &input, receive, cookie);
-  else if (status == CONIC_OK && (s.kind == CONIC_MODEL_OBJ || conic_assimp_reads(s.kind) || is_pipe))
+  else if (status == CONIC_OK && (s.kind == CONIC_MODEL_OBJ || s.kind >= CONIC_MODEL_STL || is_pipe))
     status = read_whole_stream(&s, &input);
   else if (status == CONIC_OK)
     status = pass_twice(&s, &input, path);

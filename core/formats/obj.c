@@ -26,7 +26,7 @@ typedef struct obj_reader {
   conic_builder builder;
   uint64_t counts[N_KINDS];
   largest_index used[N_KINDS];
-  uint64_t n_lines;
+  uint64_t n_lines, n_degenerate; /* that are left out: lines, and faces of fewer than 3 corners */
   double (*normals)[3];
   size_t normal_capacity;
   obj_corner *corners;
@@ -207,7 +207,8 @@ static conic_status read_face(void *data) {
       return status;
     if (length == 0 || word[0] == '#') {
       conic_polygon_settle(model, n_before);
-      return n < 3 ? conic_input_wrong(reader->input, "a face has at least 3 corners") : CONIC_OK;
+      reader->n_degenerate += n < 3;
+      return CONIC_OK;
     }
     status = read_corner(reader, word, length, current);
     if (status == CONIC_OK && n >= 2)
@@ -220,34 +221,43 @@ static conic_status read_face(void *data) {
   }
 }
 
-/* usemtl NAME */
+/* usemtl NAME, which may have blanks */
 static conic_status read_material(void *data) {
   obj_reader *reader = data;
-  const char *word;
+  const char *name;
   size_t length;
-  conic_status status = conic_input_word(reader->input, &word, &length);
+  conic_status status = conic_input_rest(reader->input, &name, &length);
   if (status != CONIC_OK || !reader->faces)
     return status;
-  if (conic_texts_find(&reader->faces->material_names, word, length) >= CONIC_MAX_MATERIALS)
+  if (conic_texts_find(&reader->faces->material_names, name, length) >= CONIC_MAX_MATERIALS)
     return conic_input_wrong(reader->input, "too many materials");
-  return conic_faces_use_material(reader->input->context, reader->faces, word, length);
+  return conic_faces_use_material(reader->input->context, reader->faces, name, length);
 }
 
-/* mtllib FILE …: paths are relative to the model's folder. */
+static conic_status add_library(obj_reader *reader, const char *name, size_t length) {
+  char path[2 * CONIC_INPUT_LONGEST_WORD];
+  if (length > CONIC_INPUT_LONGEST_WORD || reader->faces->libraries.count == CONIC_MAX_MATERIALS)
+    return conic_input_wrong(reader->input, "a material file's name is too long, or there are too many");
+  conic_input_find(reader->input, name, length, path, sizeof path);
+  return conic_texts_add(reader->input->context, &reader->faces->libraries, path, strlen(path));
+}
+
+/* mtllib FILE …: one file whose name has blanks, where there is such a file. */
 static conic_status read_libraries(void *data) {
   obj_reader *reader = data;
   const char *word;
   char path[2 * CONIC_INPUT_LONGEST_WORD];
   size_t length;
+  conic_status status = conic_input_rest(reader->input, &word, &length);
+  if (status != CONIC_OK || !reader->faces)
+    return status;
+  if (length <= CONIC_INPUT_LONGEST_WORD && conic_input_find(reader->input, word, length, path, sizeof path))
+    return add_library(reader, word, length);
   for (;;) {
-    conic_status status = conic_input_word(reader->input, &word, &length);
-    if (status != CONIC_OK || length == 0 || !reader->faces)
-      return status;
-    size_t n = conic_input_beside(reader->input, word, length, path, sizeof path);
-    if (n == 0 || reader->faces->libraries.count == CONIC_MAX_MATERIALS)
-      return conic_input_wrong(reader->input, "a material file's name is too long, or there are too many");
-    status = conic_texts_add(reader->input->context, &reader->faces->libraries, path, n);
-    if (status != CONIC_OK)
+    status = conic_input_word(reader->input, &word, &length);
+    if (status == CONIC_OK && length > 0)
+      status = add_library(reader, word, length);
+    if (status != CONIC_OK || length == 0)
       return status;
   }
 }
@@ -265,13 +275,42 @@ static const conic_input_statement statements[] = {
     {"v", read_vertex},        {"vn", read_normal},        {"vt", read_texture}, {"f", read_face},
     {"usemtl", read_material}, {"mtllib", read_libraries}, {"l", leave_out_line}};
 
-static conic_status check_indices(const obj_reader *reader) {
-  for (int kind = VERTEX; kind < N_KINDS; kind++)
+/* Corners do without a texture coordinate or a normal that there is not. */
+static void leave_out(uint32_t (*corners)[3], size_t n, uint64_t count) {
+  for (size_t i = 0; i < 3 * n; i++)
+    if (corners[i / 3][i % 3] >= count)
+      corners[i / 3][i % 3] = CONIC_NO_CORNER;
+}
+
+static void drop_missing(obj_reader *reader) {
+  conic_faces *faces = reader->faces;
+  size_t n_kept = 0;
+  for (size_t i = 0; i < reader->n_corners; i++)
+    if (reader->corners[i].i_normal < reader->counts[NORMAL])
+      reader->corners[n_kept++] = reader->corners[i];
+  reader->n_corners = n_kept;
+  if (faces) {
+    leave_out(faces->normal_corners, faces->count, reader->counts[NORMAL]);
+    leave_out(faces->texture_corners, faces->count, reader->counts[TEXTURE]);
+  }
+  for (int kind = TEXTURE; kind < N_KINDS; kind++)
     if (reader->used[kind].index > reader->counts[kind])
-      return conic_fail(reader->input->context, CONIC_ERROR_INPUT,
-                        "%s: index %llu, but there are only %llu %s (line %llu)", reader->input->name,
-                        (unsigned long long)reader->used[kind].index, (unsigned long long)reader->counts[kind],
-                        kind_names[kind], (unsigned long long)reader->used[kind].line);
+      conic_log(reader->input->context, CONIC_LOG_WARNING,
+                "%s: index %llu, but there are only %llu %s: corners that name others do without (line %llu)",
+                reader->input->name, (unsigned long long)reader->used[kind].index,
+                (unsigned long long)reader->counts[kind], kind_names[kind],
+                (unsigned long long)reader->used[kind].line);
+  if (reader->n_degenerate)
+    conic_log(reader->input->context, CONIC_LOG_WARNING, "%s: faces of fewer than 3 corners are left out: %llu",
+              reader->input->name, (unsigned long long)reader->n_degenerate);
+}
+
+static conic_status check_indices(const obj_reader *reader) {
+  if (reader->used[VERTEX].index > reader->counts[VERTEX])
+    return conic_fail(reader->input->context, CONIC_ERROR_INPUT,
+                      "%s: index %llu, but there are only %llu %s (line %llu)", reader->input->name,
+                      (unsigned long long)reader->used[VERTEX].index, (unsigned long long)reader->counts[VERTEX],
+                      kind_names[VERTEX], (unsigned long long)reader->used[VERTEX].line);
   if (reader->counts[VERTEX] == 0)
     return conic_input_wrong(reader->input, "the file ends without a vertex");
   return CONIC_OK;
@@ -314,6 +353,8 @@ conic_status conic_obj_read(conic_input *input, const conic_read_options *option
     status = conic_input_read_statements(input, statements, sizeof statements / sizeof *statements, &reader);
   if (status == CONIC_OK)
     status = check_indices(&reader);
+  if (status == CONIC_OK)
+    drop_missing(&reader);
   if (status == CONIC_OK)
     status = gather_normals(&reader);
   conic_memory_release_these(input->context, reader.normals, reader.corners);

@@ -142,6 +142,11 @@ static int needs_origin(conic_ply_type type) {
   return type == CONIC_PLY_DOUBLE || type == CONIC_PLY_INT32 || type == CONIC_PLY_UINT32;
 }
 
+int conic_ply_layout_has_codes(const conic_ply_layout *layout) {
+  return layout->fields & CONIC_SPLATS_COLORS && !layout->has_harmonics &&
+         layout->type[CONIC_PLY_RED] == CONIC_PLY_UINT16;
+}
+
 conic_status conic_ply_layout_find(conic_input *input, const conic_ply_header *header,
                                    const conic_ply_element *vertices, const conic_read_options *options,
                                    int keeps_coordinates, conic_ply_layout *layout) {
@@ -271,7 +276,7 @@ static void store_gaussians(const conic_ply_layout *layout, const conic_ply_bloc
   }
 }
 
-/* Integers are sRGB codes, of 16 bits or of 8; floats are linear. */
+/* Integers are sRGB codes, of 16 bits or of 8; floats are linear. Of 16 bits, many programs use 8. */
 static void store_colors(const conic_ply_layout *layout, const double *values, size_t n, conic_ply_type type,
                          float *to) {
   for (size_t i = 0; i < n; i++) {
@@ -281,7 +286,7 @@ static void store_colors(const conic_ply_layout *layout, const double *values, s
     else if (!conic_ply_type_is_integer(type))
       to[i] = (float)value;
     else if (type == CONIC_PLY_UINT16)
-      to[i] = (float)conic_srgb_decode(value / 65535.0);
+      to[i] = (float)(layout->keeps_codes ? value : conic_srgb_decode(value / 65535.0));
     else
       to[i] = layout->srgb[value > 0.0 ? value < 255.0 ? (int)value : 255 : 0];
   }

@@ -53,8 +53,12 @@ typedef struct conic_ply_layout {
                                                 −1: none */
   int clip_property[2];                      /* the lists of clip lines, by conic_clip_operator; -1: none */
   float cutoff;
+  int keeps_codes; /* colours of 16 bits are kept as they stand, until the whole file tells what white is */
   float srgb[256]; /* linear values of 8-bit codes */
 } conic_ply_layout;
+
+/* Whether it has colours of 16 bits, whose scale the whole file tells (core/splats/raw_colors.h). */
+int conic_ply_layout_has_codes(const conic_ply_layout *layout);
 
 /* Finds what the vertices hold. The options' cutoff turns radii into standard deviations. Texture coordinates are left
  * out unless `keeps_coordinates`, alpha unless the options keep it. Errors: INPUT (no x, y, z). */

@@ -87,10 +87,14 @@ static conic_status read_face_row(triangulation *faces, const conic_ply_property
       status = skip_property(faces->source, &properties[i]);
   }
   if (status == CONIC_OK)
-    status = conic_ply_face_texture_end_row(faces->source, faces->n_seen, faces->builder->model->n_triangles - n_before,
-                                            &faces->texture);
+    status =
+        conic_ply_face_texture_end_row(faces->source, faces->n_seen, faces->builder->model, n_before, &faces->texture);
   if (status == CONIC_OK && !faces->is_strip)
     conic_polygon_settle(faces->builder->model, n_before);
+  if (faces->source->is_cut) { /* what there is of the face is none */
+    faces->builder->model->n_triangles = n_before;
+    return status;
+  }
   return status == CONIC_OK ? conic_ply_end_row(faces->source) : status;
 }
 
@@ -121,6 +125,8 @@ conic_status conic_ply_read_faces(conic_ply_source *source, const conic_ply_head
                       "%s: the element '%s' has no list of integers vertex_indices (line %llu)", source->input->name,
                       element->name, (unsigned long long)element->line);
   conic_ply_face_texture_find(header, element, builder->model, &faces.texture);
+  if (builder->delivery) /* the vertices are gone */
+    faces.texture.color[0] = -1;
   if (builder->delivery) /* so that no polygon is settled with only a part of the vertices */
     status = conic_builder_deliver(builder, 1);
   for (uint64_t i = 0; status == CONIC_OK && i < element->count; i++) {
@@ -128,5 +134,8 @@ conic_status conic_ply_read_faces(conic_ply_source *source, const conic_ply_head
     if (status == CONIC_OK)
       status = deliver_faces(builder, 0);
   }
-  return status == CONIC_OK ? deliver_faces(builder, 1) : status;
+  conic_status colored = conic_face_colors_finish(builder, &faces.texture.colors, source->is_cut ? CONIC_OK : status);
+  if (colored == CONIC_OK)
+    colored = deliver_faces(builder, 1);
+  return status == CONIC_OK || colored != CONIC_OK ? colored : status;
 }

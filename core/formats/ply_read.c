@@ -3,6 +3,7 @@
 #include "core/base/base.h"
 #include "core/formats/ply_columns.h"
 #include "core/formats/ply_texture.h"
+#include "core/splats/raw_colors.h"
 
 /* State of reading the vertices. */
 typedef struct vertex_reader {
@@ -157,22 +158,25 @@ static conic_status read_rows(vertex_reader *reader) {
     size_t n = left < CONIC_PLY_BLOCK ? (size_t)left : CONIC_PLY_BLOCK;
     for (size_t i = 0; status == CONIC_OK && i < n; i++)
       status = read_row(reader, column_of_property, i);
-    if (status == CONIC_OK)
-      status = append_block(reader, n);
+    n = (size_t)(reader->source->i_row - done);
+    if (status == CONIC_OK || (reader->source->is_cut && n > 0))
+      status = append_block(reader, n) == CONIC_OK ? status : CONIC_ERROR_MEMORY;
     done += n;
   }
   conic_memory_release(context, column_of_property);
   return status;
 }
 
-static conic_status read_vertices(vertex_reader *reader) {
+/* Of n_there rows at most. */
+static conic_status read_vertices(vertex_reader *reader, uint64_t n_there) {
   const conic_ply_source *source = reader->source;
   const conic_ply_element *element = source->element;
+  const uint64_t count = element->count < n_there ? element->count : n_there;
   conic_status status = CONIC_OK;
   if (reader->layout.has_coordinates)
     conic_faces_begin_vertices(reader->builder->model->faces);
   if (source->input->has_size && !reader->builder->delivery)
-    status = conic_builder_reserve_points_exactly(reader->builder, (size_t)element->count);
+    status = conic_builder_reserve_points_exactly(reader->builder, (size_t)count);
   if (status != CONIC_OK)
     return status;
   return conic_ply_is_plain(source->format, element) ? read_blocks(reader) : read_rows(reader);
@@ -185,11 +189,9 @@ static conic_status read_elements(vertex_reader *reader, const conic_ply_header 
   conic_status status = CONIC_OK;
   for (size_t i = 0; status == CONIC_OK && i < header->n_elements; i++) {
     const conic_ply_element *element = &header->elements[i];
-    status = conic_ply_begin_element(source, element);
-    if (status != CONIC_OK)
-      break;
+    const uint64_t n_there = conic_ply_begin_element(source, element);
     if (element == vertices)
-      status = read_vertices(reader);
+      status = read_vertices(reader, n_there);
     else if ((!reader->builder->delivery || reader->builder->delivery->receive_faces) && element->count > 0 &&
              (strcmp(element->name, "face") == 0 || strcmp(element->name, "tristrips") == 0))
       status = conic_ply_read_faces(source, header, vertices->count, reader->builder);
@@ -220,16 +222,22 @@ static conic_status read_body(conic_input *input, const conic_read_options *opti
   int keeps_coordinates = options->keeps_faces && !delivery;
   conic_status status = conic_ply_layout_find(input, header, vertices, options, keeps_coordinates, &reader->layout);
   if (status == CONIC_OK) {
+    reader->layout.keeps_codes =
+        conic_ply_layout_has_codes(&reader->layout) && (!delivery || delivery->is_survey || delivery->is_again);
     reader->properties = header->properties + vertices->first_property; /* there are some, as x, y and z were found */
     status = conic_builder_begin(input->context, model, reader->layout.fields, delivery, &builder);
   }
   if (status == CONIC_OK)
     status = conic_ply_layout_choose_fields(input, header, vertices, options, &builder, &reader->layout);
   if (status == CONIC_OK && keeps_coordinates &&
-      (reader->layout.has_coordinates || conic_ply_has_texture_corners(header)))
+      (reader->layout.has_coordinates || conic_ply_has_texture_corners(header) || conic_ply_has_face_colors(header)))
     status = conic_ply_begin_textures(input, header, model);
   if (status == CONIC_OK)
     status = read_elements(reader, header, vertices);
+  if (source.is_cut)
+    status = conic_ply_tell_cut(&source, conic_builder_points(&builder) > 0);
+  if (status == CONIC_OK && reader->layout.keeps_codes && !delivery)
+    status = conic_raw_colors_decode(input->context, &model->points, 0);
   if (status == CONIC_OK)
     status = conic_builder_deliver(&builder, 1);
   model->follows_cutoff = reader->layout.form == CONIC_PLY_CIRCLES;
@@ -269,6 +277,7 @@ conic_status conic_ply_look(conic_input *input, const conic_read_options *option
     status = conic_ply_layout_find(input, &header, vertices, options, 0, &layout);
     *shape = (conic_model_shape){.can_part = status == CONIC_OK,
                                  .is_raw = !(layout.fields & (CONIC_SPLATS_TANGENTS | CONIC_SPLATS_NORMALS)),
+                                 .needs_survey = conic_ply_layout_has_codes(&layout),
                                  .n_points = vertices->count,
                                  .fields = has_faces(&header) || layout.has_harmonics ? 0 : layout.fields};
   }

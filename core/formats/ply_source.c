@@ -14,13 +14,23 @@ conic_status conic_ply_wrong(const conic_ply_source *source, const char *what) {
                     (unsigned long long)conic_input_offset(input));
 }
 
-conic_status conic_ply_truncated(const conic_ply_source *source) {
+conic_status conic_ply_truncated(conic_ply_source *source) {
+  source->is_cut = 1;
+  return CONIC_ERROR_INPUT;
+}
+
+conic_status conic_ply_tell_cut(const conic_ply_source *source, int is_usable) {
   const conic_input *input = source->input;
-  int is_text = source->format == CONIC_PLY_TEXT;
-  return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: the file ends within %s %llu of %llu (%s %llu)",
-                    input->name, source->element->name, (unsigned long long)source->i_row,
-                    (unsigned long long)source->element->count, is_text ? "line" : "at byte",
-                    (unsigned long long)(is_text ? input->line : conic_input_offset(input)));
+  const int is_text = source->format == CONIC_PLY_TEXT;
+  const char *const format = "%s: the file ends within %s %llu of %llu%s (%s %llu)";
+  const char *const name = source->element->name, *const place = is_text ? "line" : "at byte";
+  const uint64_t at = is_text ? input->line : conic_input_offset(input);
+  if (!is_usable)
+    return conic_fail(input->context, CONIC_ERROR_INPUT, format, input->name, name, (unsigned long long)source->i_row,
+                      (unsigned long long)source->element->count, "", place, (unsigned long long)at);
+  conic_log(input->context, CONIC_LOG_WARNING, format, input->name, name, (unsigned long long)source->i_row,
+            (unsigned long long)source->element->count, "; what is before is read", place, (unsigned long long)at);
+  return CONIC_OK;
 }
 
 /* The fewest bytes of a row: in ascii, a digit and a blank for each value. */
@@ -28,18 +38,22 @@ static uint64_t least_row_bytes(const conic_ply_source *source, const conic_ply_
   return source->format == CONIC_PLY_TEXT ? 2 * (uint64_t)element->n_properties : (uint64_t)element->least_row_bytes;
 }
 
-conic_status conic_ply_begin_element(conic_ply_source *source, const conic_ply_element *element) {
-  conic_input *input = source->input;
-  uint64_t row_bytes = least_row_bytes(source, element), remaining = conic_input_remaining_bytes(input);
+uint64_t conic_ply_begin_element(conic_ply_source *source, const conic_ply_element *element) {
+  uint64_t row_bytes = least_row_bytes(source, element), remaining = conic_input_remaining_bytes(source->input);
   source->element = element;
   source->i_row = 0;
   remaining += source->format == CONIC_PLY_TEXT && remaining < UINT64_MAX; /* the last line may lack its end */
-  if (row_bytes && element->count > remaining / row_bytes)
-    return conic_fail(input->context, CONIC_ERROR_INPUT,
-                      "%s: the file is too short for the %llu rows of '%s' that line %llu declares (at byte %llu)",
-                      input->name, (unsigned long long)element->count, element->name, (unsigned long long)element->line,
-                      (unsigned long long)conic_input_offset(input));
-  return CONIC_OK;
+  return row_bytes ? remaining / row_bytes : UINT64_MAX;
+}
+
+conic_status conic_ply_begin_whole(conic_ply_source *source, const conic_ply_element *element) {
+  const conic_input *input = source->input;
+  if (conic_ply_begin_element(source, element) >= element->count)
+    return CONIC_OK;
+  return conic_fail(input->context, CONIC_ERROR_INPUT,
+                    "%s: the file is too short for the %llu rows of '%s' that line %llu declares (at byte %llu)",
+                    input->name, (unsigned long long)element->count, element->name, (unsigned long long)element->line,
+                    (unsigned long long)conic_input_offset(input));
 }
 
 /* Past empty lines, to the next word. */
@@ -133,8 +147,10 @@ conic_status conic_ply_read_list_length(conic_ply_source *source, const conic_pl
   uint64_t item_bytes = is_text ? 2 : conic_ply_type_bytes(property->type);
   uint64_t remaining = conic_input_remaining_bytes(source->input);
   remaining += is_text && remaining < UINT64_MAX; /* the last line may lack its end */
+  enum { SHORT = 256 };                           /* no polygon has more corners */
   if (*length > remaining / item_bytes)
-    return conic_ply_wrong(source, "a list runs past the end of the file");
+    return *length <= SHORT ? conic_ply_truncated(source)
+                            : conic_ply_wrong(source, "a list runs past the end of the file");
   return CONIC_OK;
 }
 

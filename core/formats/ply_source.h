@@ -9,10 +9,14 @@ typedef struct conic_ply_source {
   conic_ply_format format;
   const conic_ply_element *element; /* the current one, for messages */
   uint64_t i_row;
+  int is_cut; /* the file ends within the row: nothing was said of it, and INPUT returned */
 } conic_ply_source;
 
-/* Begins the element; refuses more rows than the rest of the file can hold. Errors: INPUT. */
-conic_status conic_ply_begin_element(conic_ply_source *source, const conic_ply_element *element);
+/* Begins the element. Returns the most rows that the rest of the file can hold. */
+uint64_t conic_ply_begin_element(conic_ply_source *source, const conic_ply_element *element);
+
+/* The same for readers that need all of its rows: refuses more than there can be. Errors: INPUT. */
+conic_status conic_ply_begin_whole(conic_ply_source *source, const conic_ply_element *element);
 
 /* Called before and after every row. An ascii row is one line. Errors: INPUT, CANCELLED. */
 conic_status conic_ply_begin_row(conic_ply_source *source);
@@ -21,7 +25,8 @@ conic_status conic_ply_end_row(conic_ply_source *source);
 /* The next value as a double, which holds every type exactly. Errors: INPUT, CANCELLED. */
 conic_status conic_ply_read_value(conic_ply_source *source, conic_ply_type type, double *value);
 
-/* The next list's length; refuses lengths that the rest of the file cannot hold. Errors: INPUT, CANCELLED. */
+/* The next list's length; refuses lengths that the rest of the file cannot hold, of short ones as where the file ends
+ * within the row. Errors: INPUT, CANCELLED. */
 conic_status conic_ply_read_list_length(conic_ply_source *source, const conic_ply_property *property, uint64_t *length);
 
 /* Passes over `count` values. Errors: INPUT, CANCELLED. */
@@ -46,6 +51,9 @@ void conic_ply_convert(const unsigned char *bytes, size_t stride, size_t n, coni
 /* "FILE: what is wrong (line N)", or "(at byte N)" in a binary file. */
 conic_status conic_ply_wrong(const conic_ply_source *source, const char *what);
 /* The file ends too early. */
-conic_status conic_ply_truncated(const conic_ply_source *source);
+conic_status conic_ply_truncated(conic_ply_source *source);
+
+/* Says where the file is cut: as a warning where what is before is of use, which is OK, else as an error. */
+conic_status conic_ply_tell_cut(const conic_ply_source *source, int is_usable);
 
 #endif

@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "core/base/color.h"
 #include "core/splats/builder.h"
 
 /* The property of that name that is a list, or is none; -1 where there is no such property. */
@@ -12,6 +13,30 @@ static int find(const conic_ply_header *header, const conic_ply_element *element
 
 static int find_coordinates(const conic_ply_header *header, const conic_ply_element *element) {
   return strcmp(element->name, "face") == 0 ? find(header, element, "texcoord", 1) : -1;
+}
+
+/* Colours of faces count where neither vertices have some nor there are pictures. */
+static int find_colors(const conic_ply_header *header, const conic_ply_element *element, int color[3]) {
+  static const char *const names[][3] = {{"red", "green", "blue"}, {"diffuse_red", "diffuse_green", "diffuse_blue"}};
+  const conic_ply_element *vertices = conic_ply_find_element(header, "vertex");
+  for (size_t i = 0; i < 2 && vertices; i++)
+    if (find(header, vertices, names[i][0], 0) >= 0)
+      return 0;
+  for (size_t i = 0; i < 2 && strcmp(element->name, "face") == 0 && header->textures.count == 0; i++) {
+    for (int k = 0; k < 3; k++)
+      color[k] = find(header, element, names[i][k], 0);
+    if (color[0] >= 0 && color[1] >= 0 && color[2] >= 0)
+      return 1;
+  }
+  return 0;
+}
+
+int conic_ply_has_face_colors(const conic_ply_header *header) {
+  int color[3];
+  for (size_t i = 0; i < header->n_elements; i++)
+    if (find_colors(header, &header->elements[i], color))
+      return 1;
+  return 0;
 }
 
 /* With one texture there is nothing to choose. */
@@ -44,7 +69,7 @@ conic_status conic_ply_begin_textures(const conic_input *input, const conic_ply_
 
 /* If any triangle of the model is noted, all are. */
 static int has_notes(const conic_ply_header *header) {
-  int has = conic_ply_has_texture_corners(header);
+  int has = conic_ply_has_texture_corners(header) || conic_ply_has_face_colors(header);
   for (size_t i = 0; i < header->n_elements; i++)
     has |= find_picture(header, &header->elements[i]) >= 0;
   return has;
@@ -56,6 +81,10 @@ void conic_ply_face_texture_find(const conic_ply_header *header, const conic_ply
   texture->faces = has_notes(header) ? model->faces : NULL;
   texture->coordinates = texture->faces ? find_coordinates(header, element) : -1;
   texture->picture = texture->faces ? find_picture(header, element) : -1;
+  if (find_colors(header, element, texture->color))
+    texture->color_type = header->properties[element->first_property + (size_t)texture->color[0]].type;
+  else
+    texture->color[0] = texture->color[1] = texture->color[2] = -1;
 }
 
 void conic_ply_face_texture_begin_row(conic_ply_face_texture *texture) {
@@ -98,20 +127,35 @@ conic_status conic_ply_face_texture_read(conic_ply_source *source, const conic_p
     return read_coordinates(source, &properties[i], texture);
   if ((int)i == texture->picture)
     return read_picture(source, &properties[i], texture->faces);
+  for (int k = 0; k < 3; k++)
+    if ((int)i == texture->color[k])
+      return conic_ply_read_value(source, properties[i].type, &texture->values[k]);
   *is_read = 0;
   return CONIC_OK;
 }
 
-conic_status conic_ply_face_texture_end_row(const conic_ply_source *source, uint64_t n_corners, size_t n_triangles,
-                                            const conic_ply_face_texture *texture) {
-  conic_status status = CONIC_OK;
-  if (!texture->faces)
-    return CONIC_OK;
+/* As those of vertices. */
+static conic_status take_color(const conic_ply_source *source, conic_model *model, size_t first,
+                               conic_ply_face_texture *texture) {
+  const double whole = texture->color_type == CONIC_PLY_UINT16 ? 65535.0 : 255.0;
+  double linear[3];
+  for (int k = 0; k < 3; k++)
+    linear[k] = conic_ply_type_is_integer(texture->color_type) ? conic_srgb_decode(texture->values[k] / whole)
+                                                               : texture->values[k];
+  return conic_face_colors_take(source->input->context, &texture->colors, model, first, linear);
+}
+
+conic_status conic_ply_face_texture_end_row(const conic_ply_source *source, uint64_t n_corners, conic_model *model,
+                                            size_t first, conic_ply_face_texture *texture) {
+  const size_t n_triangles = model->n_triangles - first;
+  conic_status status = texture->color[0] >= 0 ? take_color(source, model, first, texture) : CONIC_OK;
+  if (!texture->faces || status != CONIC_OK)
+    return status;
   if (texture->n_values && texture->n_values != 2 * n_corners)
     return conic_ply_wrong(source, "a list of texture coordinates holds neither none nor two a corner");
   for (size_t i = 0; status == CONIC_OK && i < n_triangles; i++) {
-    uint32_t first = (uint32_t)texture->first, second = first + (uint32_t)i + 1;
-    const uint32_t corners[3] = {first, second, second + 1};
+    uint32_t corner = (uint32_t)texture->first, second = corner + (uint32_t)i + 1;
+    const uint32_t corners[3] = {corner, second, second + 1};
     status = conic_faces_add(source->input->context, texture->faces, NULL, texture->n_values ? corners : NULL);
   }
   return status;

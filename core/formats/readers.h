@@ -26,6 +26,12 @@ conic_status conic_las_look(conic_input *input, conic_model_shape *shape);
 conic_status conic_obj_read(conic_input *input, const conic_read_options *options, const conic_delivery *delivery,
                             conic_model *model);
 
+/* STL and OFF; a delivery gets nothing. */
+conic_status conic_stl_read(conic_input *input, const conic_read_options *options, const conic_delivery *delivery,
+                            conic_model *model);
+conic_status conic_off_read(conic_input *input, const conic_read_options *options, const conic_delivery *delivery,
+                            conic_model *model);
+
 /* PCD, the Point Cloud Library's format: ascii, binary and binary_compressed.
  *
  * Positions in single precision are kept as they are. Positions in double, and those of text, are measured from the

@@ -151,6 +151,20 @@ static int is_codes(const double (*rows)[CONIC_TEXT_MOST_GUESSED], size_t n_rows
   return largest > 1.0;
 }
 
+static int is_whole(const double (*rows)[CONIC_TEXT_MOST_GUESSED], size_t n_rows, size_t at) {
+  for (size_t i = 0; i < n_rows; i++)
+    if (!(fabs(rows[i][at]) < 1e9) || rows[i][at] != (double)(int)rows[i][at])
+      return 0;
+  return 1;
+}
+
+static double largest_of(const double (*rows)[CONIC_TEXT_MOST_GUESSED], size_t n_rows, size_t at) {
+  double largest = -HUGE_VAL;
+  for (size_t i = 0; i < n_rows; i++)
+    largest = fmax(largest, rows[i][at]);
+  return largest;
+}
+
 static void set_three(conic_text_columns *columns, size_t at, int first) {
   for (size_t i = 0; i < 3; i++) {
     const char *name = names_of[(size_t)first + i][0];
@@ -174,6 +188,36 @@ static void guess_many(const double (*rows)[CONIC_TEXT_MOST_GUESSED], size_t n_r
   }
 }
 
+/* Of seven, whether the colours come before the last value, as CloudCompare and S3DIS write them, and not behind an
+ * intensity. Where both may be codes, a class is a small number. */
+static int has_colors_first(const double (*rows)[CONIC_TEXT_MOST_GUESSED], size_t n_rows) {
+  if (!is_codes(rows, n_rows, 3))
+    return 0;
+  return !is_codes(rows, n_rows, 4) || (largest_of(rows, n_rows, 6) < 64.0 && largest_of(rows, n_rows, 3) >= 64.0);
+}
+
+/* Eight that begin with a row and a column of a scanner's grid, as FARO writes them. */
+static int has_grid_first(const double (*rows)[CONIC_TEXT_MOST_GUESSED], size_t n_rows) {
+  return is_whole(rows, n_rows, 0) && is_whole(rows, n_rows, 1) && is_codes(rows, n_rows, 5) &&
+         !(is_whole(rows, n_rows, 2) && is_whole(rows, n_rows, 3) && is_whole(rows, n_rows, 4));
+}
+
+static void guess_seven(const double (*rows)[CONIC_TEXT_MOST_GUESSED], size_t n_rows, conic_text_columns *columns) {
+  const int is_first = has_colors_first(rows, n_rows);
+  set_three(columns, is_first ? 3 : 4, CONIC_TEXT_RED);
+  if (is_first)
+    set_name(columns, 6, "scalar", strlen("scalar"));
+  else
+    set_name(columns, 3, "intensity", strlen("intensity"));
+}
+
+static void guess_grid(conic_text_columns *columns) {
+  set_name(columns, 0, "row", strlen("row"));
+  set_name(columns, 1, "column", strlen("column"));
+  set_three(columns, 2, CONIC_TEXT_X);
+  set_three(columns, 5, CONIC_TEXT_RED);
+}
+
 void conic_text_columns_guess(const double (*rows)[CONIC_TEXT_MOST_GUESSED], size_t n_rows, size_t n,
                               conic_text_columns *columns) {
   memset(columns, 0, sizeof *columns);
@@ -181,10 +225,13 @@ void conic_text_columns_guess(const double (*rows)[CONIC_TEXT_MOST_GUESSED], siz
   for (size_t i = 0; i < columns->n; i++)
     set_name(columns, i, "-", 1);
   set_three(columns, 0, CONIC_TEXT_X);
-  if (n == 4 || n == 7)
+  columns->is_doubtful = n > 6 || (n == 6 && !is_codes(rows, n_rows, 3) && !is_unit(rows, n_rows, 3));
+  if (n == 4)
     set_name(columns, 3, "intensity", sizeof "intensity" - 1);
   if (n == 7)
-    set_three(columns, 4, CONIC_TEXT_RED);
+    guess_seven(rows, n_rows, columns);
+  else if (n == 8 && has_grid_first(rows, n_rows))
+    guess_grid(columns);
   else if (n == 6)
     set_three(columns, 3, looks_like_normals(rows, n_rows, 3) ? CONIC_TEXT_NORMAL : CONIC_TEXT_RED);
   else if (n == 9) {

@@ -56,6 +56,7 @@ enum { CONIC_TEXT_MOST_COLUMNS = 200, CONIC_TEXT_NAME_ROOM = 40, CONIC_TEXT_MOST
 typedef struct conic_text_columns {
   size_t n;
   int has_colors, has_normals;
+  int is_doubtful;                                          /* guessed, and could be something else */
   int meaning[CONIC_TEXT_MOST_COLUMNS];                     /* of conic_text_meaning; the three of a vector are
                                                                consecutive */
   char name[CONIC_TEXT_MOST_COLUMNS][CONIC_TEXT_NAME_ROOM]; /* as given; "-": no name */

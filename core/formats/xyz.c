@@ -208,8 +208,8 @@ static void xyz_tell_columns(const conic_input *input, const xyz_heading *headin
   char list[256] = "";
   conic_text_columns_list(&heading->columns, list, sizeof list);
   if (heading->names == XYZ_UNNAMED && heading->columns.n > 3)
-    conic_log(input->context, CONIC_LOG_INFO, "%s: the columns are taken for %s; --columns says otherwise", input->name,
-              list);
+    conic_log(input->context, heading->columns.is_doubtful ? CONIC_LOG_WARNING : CONIC_LOG_INFO,
+              "%s: the columns are taken for %s; --columns says otherwise", input->name, list);
 }
 
 static conic_status find_named_columns(const conic_input *input, const studied_rows *rows, xyz_heading *heading) {

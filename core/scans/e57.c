@@ -30,6 +30,8 @@ typedef struct e57_reader {
   conic_builder builder;
   int n_slots;
   int is_spherical, has_sights;
+  int drops_zeros;      /* of the current scan: what lies at the scanner was not measured */
+  uint64_t n_zeros;     /* of all scans, that were left out */
   int columns[N_SLOTS]; /* −1: the scan lacks it */
   double rotation[3][3], color_low, color_high;
   double block[N_SLOTS][CONIC_E57_BLOCK];
@@ -96,8 +98,8 @@ static conic_status choose_columns(e57_reader *reader) {
 /* Without this check a few bytes could claim any number of points. */
 static conic_status check_size(const e57_reader *reader) {
   unsigned bits = 0;
-  for (int i = 0; i < reader->n_slots; i++)
-    bits += reader->columns[i] >= 0 ? reader->scan->columns[reader->columns[i]].bits : 0;
+  for (size_t i = 0; i < reader->scan->n_columns; i++)
+    bits += reader->scan->columns[i].bits;
   if (reader->scan->n_records > 0 && (bits == 0 || reader->scan->n_records / 8 > reader->file->mapping.n_bytes / bits))
     return conic_e57_wrong(reader->file, "a scan has more points than its file has bytes for",
                            reader->scan->records_offset);
@@ -168,14 +170,26 @@ static void store_point(e57_reader *reader, size_t i) {
   points->count++;
 }
 
+static int is_zero(const e57_reader *reader, size_t i) {
+  int n_zero = 0;
+  for (int axis = 0; axis < (reader->is_spherical ? 1 : 3); axis++)
+    n_zero += reader->block[PLACE + axis][i] == 0.0;
+  return n_zero == (reader->is_spherical ? 1 : 3);
+}
+
 static conic_status store_scan_block(e57_reader *reader, size_t n) {
   conic_builder *builder = &reader->builder;
   if (conic_builder_points(builder) + n > CONIC_MAX_POINTS)
     return conic_e57_wrong(reader->file, "too many points", reader->scan->records_offset);
   conic_status status = conic_builder_reserve_points(builder, builder->model->points.count + n);
-  for (size_t i = 0; i < n && status == CONIC_OK; i++)
-    if (!is_set(reader, POINT_INVALID, i))
+  for (size_t i = 0; i < n && status == CONIC_OK; i++) {
+    if (is_set(reader, POINT_INVALID, i))
+      continue;
+    if (reader->drops_zeros && is_zero(reader, i))
+      reader->n_zeros++;
+    else
       store_point(reader, i);
+  }
   reader->n_done += n;
   if (status == CONIC_OK)
     status = conic_progress(builder->context, "read", (double)reader->n_done / (double)reader->n_all);
@@ -205,11 +219,35 @@ static conic_status read_scan_records(e57_reader *reader, conic_e57_records *rec
   return status;
 }
 
+/* A single point of a cloud may lie at its origin; several were never measured. */
+static conic_status look_for_zeros(e57_reader *reader) {
+  conic_e57_records records;
+  size_t n = 1, n_zeros = 0;
+  reader->drops_zeros = reader->has_sights;
+  if (reader->drops_zeros)
+    return CONIC_OK;
+  conic_status status = conic_e57_records_open(reader->file, reader->scan, &records);
+  for (int axis = 0; axis < 3 && status == CONIC_OK; axis++)
+    records.streams[reader->columns[PLACE + axis]].is_wanted = 1;
+  while (status == CONIC_OK && n > 0 && n_zeros < 2) {
+    status = conic_e57_records_fill(&records, &n);
+    for (int axis = 0; axis < 3 && status == CONIC_OK && n > 0; axis++)
+      conic_e57_records_take(&records, reader->columns[PLACE + axis], n, reader->block[PLACE + axis]);
+    for (size_t i = 0; i < n && status == CONIC_OK; i++)
+      n_zeros += (size_t)is_zero(reader, i);
+  }
+  conic_e57_records_close(&records);
+  reader->drops_zeros = n_zeros > 1;
+  return status;
+}
+
 static conic_status read_scan(e57_reader *reader) {
   conic_e57_records records;
   conic_status status = choose_columns(reader);
   if (status == CONIC_OK)
     status = check_size(reader);
+  if (status == CONIC_OK)
+    status = look_for_zeros(reader);
   if (status != CONIC_OK)
     return status;
   status = conic_e57_records_open(reader->file, reader->scan, &records);
@@ -282,6 +320,11 @@ static conic_status read_opened(e57_reader *reader, const conic_read_options *op
     return status;
   status = read_scans(reader, &tree, options);
   conic_e57_tree_release(reader->file->context, &tree);
+  const conic_delivery *delivery = reader->builder.delivery;
+  if (status == CONIC_OK && reader->n_zeros && !(delivery && delivery->is_again))
+    conic_log(reader->file->context, CONIC_LOG_WARNING,
+              "%s: %llu points at 0 0 0 of their scans were not measured, and are left out", reader->file->name,
+              (unsigned long long)reader->n_zeros);
   if (status == CONIC_OK && !reader->builder.delivery)
     status = conic_raw_colors_decode(reader->file->context, &reader->builder.model->points, 0);
   return status == CONIC_OK ? conic_builder_deliver(&reader->builder, 1) : status;

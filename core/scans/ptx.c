@@ -143,6 +143,15 @@ static conic_status take_place(ptx_reader *reader, const double values[MOST_VALU
   return conic_builder_deliver(&reader->builder, 0);
 }
 
+static conic_status tell_cut(const ptx_reader *reader, uint64_t n_missing) {
+  if (conic_builder_points(&reader->builder) == 0)
+    return conic_input_wrong(reader->input, "the file ends before all places of a scan's grid");
+  conic_log(reader->input->context, CONIC_LOG_WARNING,
+            "%s: the file ends before the last %llu places of a scan's grid; what is before is read (line %llu)",
+            reader->input->name, (unsigned long long)n_missing, (unsigned long long)reader->input->line);
+  return CONIC_OK;
+}
+
 static conic_status read_places(ptx_reader *reader, int *is_done) {
   uint64_t n_places = (uint64_t)(reader->head[0][0] * reader->head[1][0]);
   conic_status status = CONIC_OK;
@@ -151,7 +160,7 @@ static conic_status read_places(ptx_reader *reader, int *is_done) {
     size_t n;
     status = next_numbers(reader, values, &n, is_done);
     if (status == CONIC_OK && n == 0)
-      return conic_input_wrong(reader->input, "the file ends before all places of a scan's grid");
+      return tell_cut(reader, n_places - i);
     if (status == CONIC_OK)
       status = take_place(reader, values, n);
     if (status == CONIC_OK)

@@ -188,7 +188,7 @@ static conic_status read_packed_elements(compressed_reader *reader, size_t n_res
   conic_status status = CONIC_OK;
   for (size_t i = 0; status == CONIC_OK && i < header->n_elements; i++) {
     const conic_ply_element *element = &header->elements[i];
-    status = conic_ply_begin_element(&reader->source, element);
+    status = conic_ply_begin_whole(&reader->source, element);
     if (status != CONIC_OK)
       break;
     if (strcmp(element->name, "chunk") == 0)
@@ -211,7 +211,7 @@ static conic_status read_packed_scene(compressed_reader *reader, const conic_gau
   unsigned fields = CONIC_GAUSSIANS_SOURCE | (header->splat_mode == CONIC_PLY_MODE_2D ? CONIC_GAUSSIANS_2D : 0);
   conic_status status = check_packed_header(input, header);
   if (status == CONIC_OK) /* before arrays are made for what a short file only says to have */
-    status = conic_ply_begin_element(&reader->source, vertices);
+    status = conic_ply_begin_whole(&reader->source, vertices);
   if (status == CONIC_OK)
     status = conic_gaussians_begin(input->context, input->name, options, vertices->count,
                                    conic_degree_of_coefficients(1 + n_rest / 3), fields, reader->gaussians);
@@ -232,6 +232,8 @@ conic_status conic_compressed_ply_read(conic_input *input, const conic_ply_heade
   reader->header = header;
   reader->gaussians = gaussians;
   conic_status status = read_packed_scene(reader, options);
+  if (reader->source.is_cut)
+    status = conic_ply_tell_cut(&reader->source, 0);
   conic_memory_release_these(input->context, reader->chunks, reader);
   return status;
 }

@@ -246,12 +246,12 @@ static conic_status read_gaussian_elements(gaussian_reader *reader, const conic_
   conic_status status = CONIC_OK;
   for (const conic_ply_element *element = reader->header->elements; status == CONIC_OK && element < vertices;
        element++) {
-    status = conic_ply_begin_element(source, element);
+    status = conic_ply_begin_whole(source, element);
     if (status == CONIC_OK)
       status = conic_ply_skip_element(source, reader->header);
   }
   if (status == CONIC_OK)
-    status = conic_ply_begin_element(source, vertices);
+    status = conic_ply_begin_whole(source, vertices);
   int degree = status == CONIC_OK ? find_degree(source->input, reader->header, vertices) : 0;
   if (degree < 0)
     return CONIC_ERROR_INPUT;
@@ -281,6 +281,8 @@ conic_status conic_gaussian_ply_read(conic_input *input, const conic_ply_header 
   reader->properties = header->properties + vertices->first_property;
   reader->gaussians = gaussians;
   conic_status status = read_gaussian_elements(reader, options, vertices);
+  if (source.is_cut)
+    status = conic_ply_tell_cut(&source, 0);
   conic_memory_release(input->context, reader);
   return status;
 }

@@ -21,10 +21,10 @@ typedef enum conic_model_kind {
   CONIC_MODEL_PCD = 4,
   CONIC_MODEL_E57 = 5,
   CONIC_MODEL_PTX = 6,
-
-  /* Assimp's, where Assimp is there */
   CONIC_MODEL_STL = 16,
   CONIC_MODEL_OFF = 17,
+
+  /* Assimp's, where Assimp is there */
   CONIC_MODEL_GLTF = 18,
   CONIC_MODEL_GLB = 19, /* binary glTF */
   CONIC_MODEL_3MF = 20,

@@ -1,0 +1,218 @@
+/* OFF: a polygon mesh as text. [ST][C][N]OFF says what a vertex has beside its place; many files leave that out. */
+#include "core/base/base.h"
+#include "core/base/color.h"
+#include "core/files/number.h"
+#include "core/formats/readers.h"
+#include "core/splats/face_colors.h"
+#include "core/splats/faces.h"
+#include "core/splats/polygon.h"
+#include "core/splats/raw_colors.h"
+
+enum { MOST_NUMBERS = 16 };
+
+typedef struct off_reader {
+  conic_input *input;
+  conic_builder builder;
+  conic_face_colors colors;
+  int has_normals, has_coordinates, is_homogeneous; /* as the first word says */
+  int has_face_colors;
+  uint64_t n_vertices, n_faces;
+} off_reader;
+
+/* The numbers of a line, as many as there is room for; lines without any are passed over. */
+static conic_status next_line_numbers(off_reader *reader, double *numbers, int *n, int *is_done) {
+  for (*n = 0; *n == 0 && !*is_done;) {
+    for (;;) {
+      const char *word;
+      size_t length;
+      double value;
+      conic_status status = conic_input_word(reader->input, &word, &length);
+      if (status != CONIC_OK)
+        return status;
+      if (length == 0 || word[0] == '#')
+        break;
+      if (conic_number_parse(word, length, &value) != length)
+        return conic_input_wrong(reader->input, "a value is not a number");
+      if (*n < MOST_NUMBERS)
+        numbers[(*n)++] = value;
+    }
+    conic_status status = conic_input_next_line(reader->input, is_done);
+    if (status != CONIC_OK)
+      return status;
+  }
+  return CONIC_OK;
+}
+
+/* The first word, and the counts, which may stand on its line. */
+static conic_status read_off_head(off_reader *reader) {
+  conic_input *input = reader->input;
+  const char *word;
+  size_t length;
+  double numbers[MOST_NUMBERS];
+  int n, is_done = 0;
+  conic_status status = conic_input_word(input, &word, &length);
+  for (; status == CONIC_OK && length > 3; word++, length--) {
+    reader->has_coordinates |= *word == 'S';
+    reader->has_normals |= *word == 'N';
+    reader->is_homogeneous |= *word == '4';
+  }
+  if (status == CONIC_OK)
+    status = next_line_numbers(reader, numbers, &n, &is_done);
+  if (status != CONIC_OK)
+    return status;
+  if (n < 2 || !(numbers[0] >= 1.0 && numbers[0] <= (double)CONIC_MAX_POINTS) ||
+      !(numbers[1] >= 0.0 && numbers[1] < 1e18))
+    return conic_input_wrong(input, "the numbers of vertices and faces are expected");
+  reader->n_vertices = (uint64_t)numbers[0];
+  reader->n_faces = (uint64_t)numbers[1];
+  return CONIC_OK;
+}
+
+/* x y z [w] [nx ny nz] [r g b [a]] [s t]. What the first word does not say is a colour, if it may be one. */
+static conic_status store_vertex(off_reader *reader, const double *numbers, int n) {
+  conic_splats *points = &reader->builder.model->points;
+  const int at_normal = 3 + reader->is_homogeneous, at_color = at_normal + 3 * reader->has_normals;
+  const int n_left = n - at_color - 2 * reader->has_coordinates, has_color = n_left == 3 || n_left == 4;
+  if (n < at_color)
+    return conic_input_wrong(reader->input, "a vertex has too few numbers");
+  conic_status status = conic_builder_reserve_points(&reader->builder, points->count + 1);
+  if (status == CONIC_OK && has_color)
+    status = conic_builder_add_field(&reader->builder, CONIC_SPLATS_COLORS);
+  if (status == CONIC_OK && reader->has_normals)
+    status = conic_builder_add_field(&reader->builder, CONIC_SPLATS_NORMALS);
+  if (status != CONIC_OK)
+    return status;
+  double place[3];
+  for (int axis = 0; axis < 3; axis++) {
+    place[axis] = reader->is_homogeneous ? numbers[axis] / numbers[3] : numbers[axis];
+    if (points->normal[axis])
+      points->normal[axis][points->count] = (float)numbers[at_normal + axis];
+    if (points->color[axis])
+      points->color[axis][points->count] = has_color ? (float)numbers[at_color + axis] : 0.0f;
+  }
+  conic_builder_store_position(&reader->builder, place);
+  points->count++;
+  return CONIC_OK;
+}
+
+static conic_status read_vertices(off_reader *reader, int *is_done) {
+  conic_status status = CONIC_OK;
+  for (uint64_t i = 0; i < reader->n_vertices && status == CONIC_OK; i++) {
+    double numbers[MOST_NUMBERS];
+    int n;
+    status = next_line_numbers(reader, numbers, &n, is_done);
+    if (status == CONIC_OK && n == 0)
+      return conic_input_wrong(reader->input, "the file ends before its %llu vertices",
+                               (unsigned long long)reader->n_vertices);
+    if (status == CONIC_OK)
+      status = store_vertex(reader, numbers, n);
+  }
+  return status;
+}
+
+/* Colours behind a face's corners: three or four codes, or fractions; one alone is a number in a table of Geomview's.
+ */
+static conic_status end_face(off_reader *reader, size_t first, const double *numbers, int n) {
+  conic_context *context = reader->input->context;
+  conic_model *model = reader->builder.model;
+  double linear[3] = {1.0, 1.0, 1.0}, largest = 0.0;
+  conic_status status = CONIC_OK;
+  for (int i = 0; i < n && n >= 3; i++)
+    largest = numbers[i] > largest ? numbers[i] : largest;
+  for (int i = 0; i < 3 && n >= 3; i++)
+    linear[i] = conic_srgb_decode(largest > 1.0 ? numbers[i] / 255.0 : numbers[i]);
+  reader->has_face_colors |= n >= 3;
+  if (!model->points.color[0])
+    status = conic_face_colors_take(context, &reader->colors, model, first, linear);
+  for (size_t i = first; model->faces && i < model->n_triangles && status == CONIC_OK; i++)
+    status = conic_faces_add(context, model->faces, NULL, NULL);
+  conic_polygon_settle(model, first);
+  return status;
+}
+
+static conic_status wrong_corner(const off_reader *reader, double index) {
+  return conic_input_wrong(reader->input, "vertex index %g, but there are only %llu vertices", index,
+                           (unsigned long long)reader->n_vertices);
+}
+
+/* A face: the number of its corners, these, and perhaps a colour. */
+static conic_status read_face(off_reader *reader, int *is_done) {
+  const size_t first = reader->builder.model->n_triangles;
+  uint32_t corners[2] = {0, 0};
+  double behind[4], n_corners = -1.0;
+  int n_behind = 0;
+  for (double i = -1.0;; i += 1.0) {
+    const char *word;
+    size_t length;
+    double value;
+    conic_status status = conic_input_word(reader->input, &word, &length);
+    if (status != CONIC_OK)
+      return status;
+    const int is_end = length == 0 || word[0] == '#';
+    if (!is_end && conic_number_parse(word, length, &value) != length)
+      return conic_input_wrong(reader->input, "a value is not a number");
+    if (is_end && n_corners < 0.0) { /* an empty line */
+      status = conic_input_next_line(reader->input, is_done);
+      if (status != CONIC_OK || *is_done)
+        return status;
+      i = -2.0;
+      continue;
+    }
+    if (is_end && i < n_corners)
+      return conic_input_wrong(reader->input, "a face has fewer corners than it says");
+    if (is_end)
+      break;
+    if (i < 0.0)
+      n_corners = value;
+    else if (i < n_corners) {
+      if (!(value >= 0.0 && value < (double)reader->n_vertices))
+        return wrong_corner(reader, value);
+      if (i >= 2.0)
+        status = conic_builder_add_triangle(&reader->builder, corners[0], corners[1], (uint32_t)value);
+      corners[i > 0.0] = (uint32_t)value;
+      if (status != CONIC_OK)
+        return status;
+    } else if (n_behind < 4)
+      behind[n_behind++] = value;
+  }
+  conic_status status = end_face(reader, first, behind, n_behind);
+  return status == CONIC_OK ? conic_input_next_line(reader->input, is_done) : status;
+}
+
+static conic_status read_faces(off_reader *reader, int is_done) {
+  conic_status status = CONIC_OK;
+  for (uint64_t i = 0; i < reader->n_faces && status == CONIC_OK; i++) {
+    if (is_done) {
+      conic_log(reader->input->context, CONIC_LOG_WARNING,
+                "%s: the file ends before face %llu of %llu; what is before is read (line %llu)", reader->input->name,
+                (unsigned long long)i, (unsigned long long)reader->n_faces, (unsigned long long)reader->input->line);
+      return CONIC_OK;
+    }
+    status = read_face(reader, &is_done);
+  }
+  return status;
+}
+
+conic_status conic_off_read(conic_input *input, const conic_read_options *options, const conic_delivery *delivery,
+                            conic_model *model) {
+  off_reader reader = {.input = input};
+  int is_done = 0;
+  (void)delivery;
+  conic_status status = conic_builder_begin(input->context, model, 0, NULL, &reader.builder);
+  if (status == CONIC_OK)
+    status = read_off_head(&reader);
+  if (status == CONIC_OK)
+    status = read_vertices(&reader, &is_done);
+  if (status == CONIC_OK && model->points.color[0])
+    status = conic_raw_colors_decode(input->context, &model->points, 1);
+  else if (status == CONIC_OK && options->keeps_faces)
+    status = conic_faces_create(input->context, &model->faces);
+  if (status == CONIC_OK)
+    status = read_faces(&reader, is_done);
+  if (!reader.has_face_colors) {
+    conic_faces_destroy(input->context, model->faces);
+    model->faces = NULL;
+    conic_face_colors_finish(&reader.builder, &reader.colors, CONIC_ERROR_INPUT); /* lets go of them */
+  }
+  return conic_face_colors_finish(&reader.builder, &reader.colors, status);
+}
