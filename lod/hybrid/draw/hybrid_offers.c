@@ -1,7 +1,6 @@
 #include "lod/hybrid/draw/hybrid_offers.h"
 
 #include "core/base/base.h"
-
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
 #include "core/splats/ellipse.h"
