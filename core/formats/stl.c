@@ -194,6 +194,7 @@ conic_status conic_stl_read(conic_input *input, const conic_read_options *option
   stl_reader reader = {.input = input};
   (void)delivery;
   conic_status status = conic_builder_begin(input->context, model, 0, NULL, &reader.builder);
+  model->up[2] = 1.0; /* as printers have it */
   if (status == CONIC_OK)
     status = conic_input_fill(input, CONIC_INPUT_LONGEST_LINE);
   const int is_binary = status == CONIC_OK && !is_text(input);

@@ -86,6 +86,13 @@ run 0 info cut.stl
 grep -q '^conic: warning: cut.stl: the file ends without endsolid' err || fail "cut.stl: $(cat err)"
 
 # Loaded for such files alone.
+cat > a.amf << 'END'
+<?xml version="1.0"?><amf unit="meter"><object id="0"><mesh><vertices>
+<vertex><coordinates><x>0</x><y>0</y><z>0</z></coordinates></vertex>
+<vertex><coordinates><x>1</x><y>0</y><z>0</z></coordinates></vertex>
+<vertex><coordinates><x>0</x><y>1</y><z>0</z></coordinates></vertex>
+</vertices><volume><triangle><v1>0</v1><v2>1</v2><v3>2</v3></triangle></volume></mesh></object></amf>
+END
 loads_assimp() {
   LD_DEBUG=files LD_DEBUG_OUTPUT="$work/libraries" "$conic" info "$1" > /dev/null
   grep -qs libassimp libraries.*
@@ -94,16 +101,17 @@ loads_assimp() {
   return $found
 }
 "$conic" make plane -n 10 -o plane.ply || fail "make"
-loads_assimp a.stl || fail "no libassimp is loaded for a.stl, or this test does not see it"
+loads_assimp a.amf || fail "no libassimp is loaded for a.amf, or this test does not see it"
 ! loads_assimp plane.ply || fail "libassimp is loaded for a PLY"
 ! loads_assimp a.obj || fail "libassimp is loaded for an OBJ"
+! loads_assimp a.stl || fail "libassimp is loaded for an STL"
 
 # A program without the module beside it.
 mkdir alone
 cp "$conic" alone/conic
 alone/conic --version | grep -q '^Not in this build:.* Assimp' || fail "Assimp is said to be there where it is not"
-alone/conic info a.stl > out 2> err
+alone/conic info a.amf > out 2> err
 [[ $? -eq 4 ]] || fail "without the module: not exit code 4"
-grep -q 'a.stl: cannot read stl: .*conic-assimp.so' err || fail "without the module: $(cat err)"
+grep -q 'a.amf: cannot read amf: .*conic-assimp.so' err || fail "without the module: $(cat err)"
 
 [[ $failures -eq 0 ]]

@@ -100,17 +100,18 @@ run_wrong 3 'two?lines.xyz' '' render "$line_end" -o outputs/a.pfm
 
 # Cut files
 head -c 1500 sound.ply > cut.ply
-wrong_model cut.ply 'too short.*line [0-9].*byte [0-9]'
+run 0 info cut.ply
+grep -q '^conic: warning: cut.ply: the file ends within vertex .*what is before is read (at byte ' err || fail "$(cat err)"
 head -c 150 sound.ply > cut_header.ply
 wrong_model cut_header.ply 'ends within the header (line [0-9]*)'
 head -c 1000 sound.pfm > cut.pfm
 wrong_picture cut.pfm 'too short.*byte'
 "$conic" prepare sound.ply -o - < /dev/null | head -c 3000 > cut_stream
 "$conic" info - < cut_stream > out 2> err
-[[ $? -eq 3 ]] || fail "a cut stream is taken for sound"
+[[ $? -eq 0 && $(grep -c '^conic: warning: .*the file ends within vertex' err) -eq 1 ]] || fail "a cut stream is taken for sound"
 cat cut_stream | "$conic" info - > out 2> err # whose size is not known
-[[ $? -eq 3 && $(wc -l < err) -eq 1 ]] || fail "a cut pipe is taken for sound: $(cat err)"
-grep -q '^conic: error: standard input: .*(at byte ' err || fail "a cut pipe: where? $(cat err)"
+[[ $? -eq 0 && $(wc -l < err) -eq 1 ]] || fail "a cut pipe is taken for sound: $(cat err)"
+grep -q '^conic: warning: standard input: .*(at byte ' err || fail "a cut pipe: where? $(cat err)"
 
 # Contents that cannot be
 header='ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n'
@@ -119,12 +120,12 @@ printf "$header${faces}3 0 1 3\n" > index.ply
 wrong_model index.ply 'vertex index 3.*(line 13)'
 printf "$header${faces}3 0 1 -1\n" > negative.ply
 wrong_model negative.ply 'negative.*(line 13)'
-printf "$header${faces}200 0 1 2\n" > list.ply
+printf "$header${faces/uchar/ushort}2000 0 1 2\n" > list.ply
 wrong_model list.ply 'list runs past.*(line 13)'
 printf "${header/3/-3}end_header\n0 0 0\n" > count.ply
 wrong_model count.ply '(line 3)'
-printf "${header/3/4000000000}end_header\n0 0 0\n" > huge.ply
-wrong_model huge.ply '4000000000.*line 3'
+printf "${header/3/4000000000}end_header\n" > huge.ply
+wrong_model huge.ply '4000000000.*line '
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n' > index.obj
 wrong_model index.obj 'index 4.*(line 4)'
 
@@ -143,9 +144,6 @@ past|f 1 2 4|: index 4, but there are only 3 vertices (line 4)$
 back|f 1 2 -4|: index -4, but there are only 3 vertices so far (line 4)$
 zero|f 1 2 0|: a face.s corner is v, v/t, v//n or v/t/n (line 4)$
 wide|f 1 2 4294967297|: an index is out of range (line 4)$
-two|f 1 2|: a face has at least 3 corners (line 4)$
-texture|f 1/1 2/1 3/1|: index 1, but there are only 0 texture coordinates (line 4)$
-normal|f 1//1 2//1 3//1|: index 1, but there are only 0 normals (line 4)$
 END
 printf "$corners" > faceless.obj
 run_wrong 3 faceless.obj ': there are no faces for the texture to lie on$' hybrid faceless.obj -o outputs/a.chy --texture a.png

@@ -90,7 +90,7 @@ static inline void seeds_ply(seed_set *set, const char *header, const char *type
         for (int corner = 0; corner < 3; corner++)
           n += seeds_value(bytes + n, 'i', (row + corner) % rows, is_big);
       }
-  seeds_add(set, "ply", "ply", 0, bytes, n);
+  seeds_add(set, "ply", "ply", 1, bytes, n);
 }
 
 static inline void seeds_all_ply(seed_set *set) {

@@ -298,11 +298,11 @@ static void check_refused(const char *name, const void *bytes, size_t n, const c
 
 /* Where Assimp fails, or does not come back, it is one line of error. */
 static void test_refused(void) {
-  static const char huge[] = "OFF\n4 2000000000 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n";
+  static const char huge[] = "OFF\n4 2000000000 0\n0 0 0\n1 0 0\n";
   static const char nothing[] = "{\"asset\":{\"version\":\"2.0\"}}";
   static mesh_file file;
-  check_refused("a.off", huge, sizeof huge - 1, "cannot read: "); /* for want of memory, of which a sanitizer dies */
-  check_refused("a.stl", "\0\0\0", 3, "cannot read: ");
+  check_refused("a.off", huge, sizeof huge - 1, "ends before its");
+  check_refused("a.stl", "\0\0\0", 3, "ends within the header");
   check_refused("a.fbx", "rubbish", 7, "cannot read: ");
   check_refused("a.gltf", nothing, sizeof nothing - 1, "a.gltf: ");
   file.n = 0;

@@ -305,8 +305,11 @@ static void test_pipe(void) {
   conic_model_release(context, &from_file);
   conic_model_release(context, &from_pipe);
   unlink(path);
-  files_check_failed("pipe", read_through_pipe(bytes, (size_t)n - 1, &from_pipe), "ends within vertex 39999 of 40000",
-                     "at byte", (const char *)NULL);
+  files_warnings = 0;
+  CHECK_OK(read_through_pipe(bytes, (size_t)n - 1, &from_pipe));
+  CHECK(from_pipe.points.count == N_POINTS - 1 && files_warnings == 1);
+  CHECK(strstr(files_warning, "ends within vertex 39999 of 40000") && strstr(files_warning, "at byte"));
+  conic_model_release(context, &from_pipe);
   /* a count that no pipe will ever fill takes no memory */
   n = snprintf(bytes, sizeof bytes,
                "ply\nformat binary_little_endian 1.0\nelement vertex 4294967294\n" XYZ "end_header\n0123456789");

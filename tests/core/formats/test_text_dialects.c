@@ -44,7 +44,7 @@ static void check_read(const char *name, const char *text, unsigned fields) {
   conic_model model;
   CHECK_OK(read_named(name, text, NULL, &model));
   check_points(text, &model, fields);
-  CHECK(files_warnings == 0);
+  CHECK(files_warnings == 0 || strstr(files_warning, "the columns are taken for"));
   conic_model_release(context, &model);
 }
 

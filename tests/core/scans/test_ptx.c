@@ -56,12 +56,21 @@ static void check_wrong(const char *text, const char *said, const char *where) {
 }
 
 static void test_wrong(void) {
-  check_wrong(HEAD("2", "1", "1") "4 5 6 0.25\n", "the file ends before all places", "line 12");
+  check_wrong(HEAD("2", "1", "1"), "the file ends before all places", "line 11");
   check_wrong(HEAD("2", "1", "1") "4 5 6 0.25\n1 2 3\n", "a point has 3 values", "line 12");
   check_wrong(HEAD("2", "1", "1") "4 5 6 0.25\n1 2 3 x\n", "not a number", "line 12");
   check_wrong(HEAD("1", "1.5", "1") "4 5 6 0.25\n", "no whole number", "line 1");
   check_wrong(HEAD("1", "1", "1") "4 5 6 0.25\n1\n1\n1 2\n", "a scan's head", "line 14");
   check_wrong("15\n71\n0 0 0\n1 0 0\n", "two counts begin a PTX scan", "line 2");
+}
+
+/* What is before the end is read. */
+static void test_cut(void) {
+  conic_model model;
+  files_warnings = 0;
+  CHECK_OK(read_text(HEAD("2", "2", "1") "4 5 6 0.25\n7 5 6 0.5\n", NULL, &model));
+  CHECK(model.points.count == 2 && files_warnings == 1 && strstr(files_warning, "the last 2 places"));
+  conic_model_release(context, &model);
 }
 
 static void test_real(const char *source_folder) {
@@ -80,6 +89,7 @@ int main(int argc, char **argv) {
   test_scans();
   test_no_scanner();
   test_wrong();
+  test_cut();
   test_real(argc > 1 ? argv[1] : ".");
   files_end(context);
   return check_result();
