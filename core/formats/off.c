@@ -135,12 +135,13 @@ static conic_status wrong_corner(const off_reader *reader, double index) {
                            (unsigned long long)reader->n_vertices);
 }
 
-/* A face: the number of its corners, these, and perhaps a colour. */
-static conic_status read_face(off_reader *reader, int *is_done) {
+/* A face: the number of its corners, these, and perhaps a colour; *has_face is 0 where the file ends before. */
+static conic_status read_face(off_reader *reader, int *is_done, int *has_face) {
   const size_t first = reader->builder.model->n_triangles;
   uint32_t corners[2] = {0, 0};
   double behind[4], n_corners = -1.0;
   int n_behind = 0;
+  *has_face = 0;
   for (double i = -1.0;; i += 1.0) {
     const char *word;
     size_t length;
@@ -175,6 +176,7 @@ static conic_status read_face(off_reader *reader, int *is_done) {
     } else if (n_behind < 4)
       behind[n_behind++] = value;
   }
+  *has_face = 1;
   conic_status status = end_face(reader, first, behind, n_behind);
   return status == CONIC_OK ? conic_input_next_line(reader->input, is_done) : status;
 }
@@ -182,13 +184,15 @@ static conic_status read_face(off_reader *reader, int *is_done) {
 static conic_status read_faces(off_reader *reader, int is_done) {
   conic_status status = CONIC_OK;
   for (uint64_t i = 0; i < reader->n_faces && status == CONIC_OK; i++) {
-    if (is_done) {
-      conic_log(reader->input->context, CONIC_LOG_WARNING,
-                "%s: the file ends before face %llu of %llu; what is before is read (line %llu)", reader->input->name,
-                (unsigned long long)i, (unsigned long long)reader->n_faces, (unsigned long long)reader->input->line);
-      return CONIC_OK;
-    }
-    status = read_face(reader, &is_done);
+    int has_face = 0;
+    if (!is_done)
+      status = read_face(reader, &is_done, &has_face);
+    if (status != CONIC_OK || has_face)
+      continue;
+    conic_log(reader->input->context, CONIC_LOG_WARNING,
+              "%s: the file ends before face %llu of %llu; what is before is read (line %llu)", reader->input->name,
+              (unsigned long long)i, (unsigned long long)reader->n_faces, (unsigned long long)reader->input->line);
+    return CONIC_OK;
   }
   return status;
 }

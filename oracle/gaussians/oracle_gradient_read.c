@@ -102,7 +102,7 @@ static conic_status read_gradient_ply(conic_context *context, conic_input *input
                       "%s: a gradient begins with the element vertex, of x, f_dc_0, opacity, scale_0, rot_0 … (line 1)",
                       input->name);
   conic_ply_source source = {.input = input, .format = header->format, .element = rows};
-  conic_status status = conic_ply_begin_element(&source, rows); /* which knows whether so many rows can follow */
+  conic_status status = conic_ply_begin_whole(&source, rows); /* which knows whether so many rows can follow */
   if (status == CONIC_OK)
     status = conic_oracle_gradient_room(context, (size_t)rows->count, degree, 1, g);
   gradient_target *targets = conic_memory_allocate(context, rows->n_properties, sizeof *targets);
@@ -114,6 +114,10 @@ static conic_status read_gradient_ply(conic_context *context, conic_input *input
     targets[k] = find_gradient_target(g, properties[k].name);
   if (status == CONIC_OK)
     status = read_gradient_rows(&source, properties, targets, g->count);
+  if (source.is_cut)
+    status = conic_ply_tell_cut(&source, 0);
+  if (source.is_cut)
+    status = conic_ply_tell_cut(&source, 0);
   conic_memory_release(context, targets);
   return status;
 }

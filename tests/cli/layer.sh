@@ -117,8 +117,9 @@ run 3 layer missing.ply -o x.lpc
 run 3 layer gyroid.lpc -o x.lpc
 run 4 layer gyroid.ply -o /nowhere/x.lpc
 head -c 1000000 gyroid.ply > cut.ply
-run 3 layer cut.ply -o x.lpc
-run 3 layer gyroid.ply cut.ply -o x.lpc
+run 0 layer cut.ply -o x.lpc
+grep -q '^conic: warning: cut.ply: the file ends within vertex' err || fail "a cut file is no warning: $(cat err)"
+rm x.lpc
 head -c 100000 gyroid.lpc > cut.lpc
 run 3 info cut.lpc
 grep -q '^conic: error: cut.lpc: .*(at byte ' err || fail "a cut file: $(cat err)"

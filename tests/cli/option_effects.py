@@ -109,8 +109,6 @@ CASES = {
 SAME = {
     ("mesh", "--as mesh"): "what it is drawn as anyway",
     ("textured", "--as mesh"): "what it is drawn as anyway",
-    ("mesh", "--as hybrid"): "all of it becomes triangles",
-    ("textured", "--as hybrid"): "all of it becomes triangles",
     ("textured", "--only triangles"): "they all are",
     ("splats", "--view 0"): "the only one",
     ("mesh", "--view 0"): "the only one",

@@ -1,0 +1,138 @@
+#!/usr/bin/env bash
+# The same small things as the programs of others write them: a square of one colour comes out in that colour, whatever
+# the file; columns of text are told by their values; what is cut, not measured or names what there is not is left out,
+# and said.
+set -uo pipefail
+
+source "$1/tests/support/program.bash"
+
+# color FILE R G B: the middle of the square, as linear values of these codes
+color() {
+  local file=$1
+  run_as_typed 0 render "$file" -o a.pfm --size 9x9 --shade none --samples 1 --background 0,0,0 --up y --azimuth 0 \
+    --elevation 0 --projection orthographic -q
+  perl -e 'local $/; open F, "<", "a.pfm"; my @v = unpack "f<*", substr(<F>, -9 * 9 * 12);
+    for (0 .. 2) { my $s = $ARGV[$_] / 255; my $l = $s <= 0.04045 ? $s / 12.92 : (($s + 0.055) / 1.055) ** 2.4;
+      exit 1 if abs($v[3 * 40 + $_] - $l) > 0.02 }' "${@:2}" ||
+    fail "$file: not of the colour ${*:2}"
+}
+facts() { # FILE PATTERN …: what conic info says
+  run 0 info "$1"
+  for pattern in "${@:2}"; do
+    grep -qE -- "$pattern" out || fail "$1: no $pattern in $(cat out)"
+  done
+}
+warned() { # PATTERN
+  [[ $(grep -c '^conic: warning: ' err) -eq 1 ]] && grep -qE -- "$1" err || fail "no warning of $1: $(cat err)"
+}
+
+# Colours of vertices and of faces
+places=('0 0 0' '1 0 0' '1 1 0' '0 1 0')
+ply_header() { # TYPE OF VERTICES' COLOURS TYPE OF FACES'
+  printf 'ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n'
+  [[ -z $1 ]] || printf 'property %s red\nproperty %s green\nproperty %s blue\n' "$1" "$1" "$1"
+  printf 'element face 1\nproperty list uchar int vertex_indices\n'
+  [[ -z $2 ]] || printf 'property %s red\nproperty %s green\nproperty %s blue\n' "$2" "$2" "$2"
+  printf 'end_header\n'
+}
+vertices() { # BEHIND EACH
+  for place in "${places[@]}"; do echo "$place $1"; done
+}
+{ ply_header uchar ''; vertices '100 150 200'; echo 4 0 1 2 3; } > bytes.ply
+{ ply_header ushort ''; vertices '100 150 200'; echo 4 0 1 2 3; } > bytes_in_shorts.ply
+{ ply_header ushort ''; vertices '25700 38550 51400'; echo 4 0 1 2 3; } > shorts.ply
+{ ply_header '' uchar; vertices ''; echo 4 0 1 2 3 100 150 200; } > faces.ply
+{ ply_header uchar uchar; vertices '100 150 200'; echo 4 0 1 2 3 9 9 9; } > both.ply
+{ echo COFF; echo 4 1 0; vertices '100 150 200 255'; echo 4 0 1 2 3; } > codes.off
+{ echo COFF; echo 4 1 0; vertices '0.39216 0.58824 0.78431 1'; echo 4 0 1 2 3; } > fractions.off
+{ echo 'OFF 4 1 0 # by hand'; vertices '100 150 200'; echo 4 0 1 2 3; } > unsaid.off
+{ echo OFF; echo 4 1 0; vertices ''; echo 4 0 1 2 3 100 150 200; } > faces.off
+{ echo OFF; echo 4 1 0; vertices ''; echo 4 0 1 2 3 0.39216 0.58824 0.78431; } > fractions_of_faces.off
+for file in bytes.ply bytes_in_shorts.ply shorts.ply faces.ply both.ply codes.off fractions.off unsaid.off faces.off \
+  fractions_of_faces.off; do
+  color $file 100 150 200
+  facts $file '^points +4$' '^triangles +2$'
+done
+run 0 layer bytes_in_shorts.ply -o a.lpc # where points are read some at a time
+run 0 layer bytes.ply -o b.lpc
+cmp -s a.lpc b.lpc || fail "shorts are other colours in a layered cloud"
+run 0 prepare faces.ply -o prepared.ply
+facts prepared.ply '^fields .*colors'
+
+# STL: both makers' colours, bytes behind the end, upper case, a file that is cut
+stl() { # HEADER BITS [BITS BEHIND]
+  perl -e 'my ($head, $bits) = @ARGV; $head =~ s/%/\xff/g; print pack("a80V", $head, 2);
+    for ([[0, 0, 0], [1, 0, 0], [1, 1, 0]], [[0, 0, 0], [1, 1, 0], [0, 1, 0]]) {
+      print pack "f<12v", 0, 0, 0, map({@$_} @$_), $bits }' "$1" "$2"
+}
+stl 'COLOR=%%%%,MATERIAL=' $((12 | 18 << 5 | 24 << 10)) > magics.stl
+stl 'by VisCAM' $((1 << 15 | 12 << 10 | 18 << 5 | 24)) > viscam.stl
+color magics.stl 99 148 197
+color viscam.stl 99 148 197
+{ stl plain 0; printf 'end'; } > behind.stl
+color behind.stl 255 255 255
+facts behind.stl '^points +4$' '^triangles +2$'
+stl plain 0 | head -c 150 > cut.stl
+facts cut.stl '^triangles +1$'
+warned 'ends within face 1 of 2'
+printf 'SOLID A NAME\n FACET NORMAL 0 0 1\n  OUTER LOOP\n   VERTEX 0 0 0\n   VERTEX 1 0 0\n   VERTEX 0 1 0\n  ENDLOOP\n ENDFACET\nENDSOLID\n' > upper.stl
+facts upper.stl '^points +3$' '^triangles +1$'
+[[ ! -s err ]] || fail "$(cat err)"
+
+# OFF: points alone, a cut file, a wrong corner
+printf 'OFF\n2 0 0\n0 0 0\n1 2 3\n' > points.off
+facts points.off '^points +2$' '^bounds +0 0 0 to 1 2 3$'
+printf 'OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n' > cut.off
+facts cut.off '^triangles +1$'
+warned 'ends before face 1 of 2'
+printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n' > corner.off
+run 3 info corner.off
+grep -q 'vertex index 3, but there are only 3 vertices (line 6)' err || fail "$(cat err)"
+
+# Columns of text, told by their values
+rows() { # PERL THAT PRINTS ROW $i, OF 40
+  perl -e "for my \$i (0 .. 39) { print join(' ', $1), qq(\n) }"
+}
+columns() { # FILE NAMES
+  facts "$1" "^values +$2\$"
+  warned 'the columns are taken for'
+}
+rows '0.1 * $i, 0.3, 7, $i, 100, 200, 0.001 * $i - 0.5' > scalar.xyz
+columns scalar.xyz 'x, y, z, red, green, blue, scalar'
+rows '0.1 * $i, 0.3, 7, 60 + $i, 100, 200, $i % 13' > label.xyz
+columns label.xyz 'x, y, z, red, green, blue, scalar'
+rows '0.1 * $i, 0.3, 7, 1000 + $i, $i, 100, 200' > intensity.xyz
+columns intensity.xyz 'x, y, z, intensity, red, green, blue'
+rows '$i % 5, int($i / 5), 0.1 * $i, 0.3, 7.5, $i, 100, 200' > grid.xyz
+columns grid.xyz 'row, column, x, y, z, red, green, blue'
+rows '0.1 * $i, 0.3, 7, $i, 100, 200' > plain.xyz
+facts plain.xyz '^values +x, y, z, red, green, blue$'
+[[ ! -s err ]] || fail "colours are no guess: $(cat err)"
+
+# OBJ: names with blanks, of Windows, of another machine; corners of what there is not
+printf 'newmtl a b\nmap_Kd -s 1 1 1 -o 0 0 a picture.pfm\n' > 'my materials.mtl'
+perl -e 'print "PF\n2 2\n-1\n", pack("f<*", (0.12744, 0.30499, 0.57758) x 4)' > 'a picture.pfm'
+square='v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 0 0\nvt 0 0\nvt 0 0\n'
+printf "mtllib my materials.mtl\n${square}usemtl a b\nf 1/1 2/2 3/3 4/4\n" > blanks.obj
+printf 'newmtl a\nmap_Kd C:\\tex\\a picture.pfm\n' > other.mtl
+printf "mtllib D:\\\\models\\\\other.mtl\n${square}usemtl a\nf 1/1 2/2 3/3 4/4\n" > windows.obj
+for file in blanks.obj windows.obj; do
+  color $file 100 150 200
+  [[ ! -s err ]] || fail "$file: $(cat err)"
+done
+printf "${square}f 1/1 2/9 3/3\nf 1//5 2//5 3//5\n" > beyond.obj
+facts beyond.obj '^triangles +2$'
+[[ $(grep -c 'do without' err) -eq 2 ]] || fail "corners of what there is not: $(cat err)"
+printf "${square}f 1 2\nf 1 2 3\n" > corners.obj
+facts corners.obj '^triangles +1$'
+warned 'fewer than 3 corners are left out: 1'
+
+# Cut PLY and PTX
+head -c -8 bytes.ply > cut.ply # within the face
+facts cut.ply '^points +4$' '^fields +positions, colors$'
+warned 'ends within face 0 of 1'
+{ printf '2\n2\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n'; printf '%s 1 2 0.5\n' 1 2 3; } > cut.ptx
+facts cut.ptx '^points +3$'
+warned 'ends before the last 1 places'
+
+[[ $failures -eq 0 ]]
