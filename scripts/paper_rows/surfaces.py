@@ -150,7 +150,7 @@ def _(bench):
 
 words("S22", "Future: local h, sharp features, a hierarchy from smooth to detailed, topology", PARTLY,
       "conic mls -k K; conic mls --sharp", "The first two. A range of `--h` gives a sequence from smooth to detailed, as files; "
-      "topology is what the points suggest, with `--hole`")
+      "topology is not found: `--hole` is given")
 DEPARTURES = [
     "The plane is projected until the point is a fixed point: the printed search does not give one.",
     "Densifying fills the largest empty circles that darts find, not the vertices of a Voronoi diagram.",

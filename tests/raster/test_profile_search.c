@@ -228,15 +228,16 @@ typedef struct kind {
       9, 9, 9                                                                                                          \
     }                                                                                                                  \
   }
-static const kind kinds[] = {{{CONIC_KERNEL_HAT, 1.0f, 0, 0, 0}, ANY},
-                             {{CONIC_KERNEL_HAT, 1.5f, 0, 0, 0}, ANY},
-                             {{CONIC_KERNEL_HAT, 3.0f, 0, 0, 0}, ANY},
-                             {{CONIC_KERNEL_CONFETTI, 1.5f, 6.0f, 1.5f, 3}, ANY},
-                             {{CONIC_KERNEL_CONFETTI, 1.5f, 4.0f, 1.5f, 5}, ANY},
-                             {{CONIC_KERNEL_CONFETTI, 3.0f, 4.0f, 3.0f, 5}, ANY},
-                             {{CONIC_KERNEL_BOX, 1.0f, 0, 0, 0}, ANY},
-                             {{CONIC_KERNEL_BOX, 1.5f, 0, 0, 0}, ANY},
-                             {{CONIC_KERNEL_BOX, 3.0f, 0, 0, 0}, ANY}};
+static const kind kinds[] = {
+    {{CONIC_KERNEL_HAT, 1.0f, 0, 0, 0}, {{0.03, 0.29, 0.23}, {0.09, 0.40, 0.24}, {0.13, 0.50, 0.50}}},
+    {{CONIC_KERNEL_HAT, 1.5f, 0, 0, 0}, {{0.11, 0.29, 0.17}, {0.05, 0.61, 0.33}, {0.16, 0.72, 0.58}}},
+    {{CONIC_KERNEL_HAT, 3.0f, 0, 0, 0}, {{0.08, 0.39, 0.44}, {0.25, 0.57, 0.43}, {0.34, 0.52, 0.43}}},
+    {{CONIC_KERNEL_CONFETTI, 1.5f, 6.0f, 1.5f, 3}, {{0.09, 0.39, 0.30}, {0.07, 0.62, 0.73}, {0.33, 0.51, 0.65}}},
+    {{CONIC_KERNEL_CONFETTI, 1.5f, 4.0f, 1.5f, 5}, {{0.11, 0.44, 0.52}, {0.08, 0.43, 0.24}, {0.25, 0.47, 0.37}}},
+    {{CONIC_KERNEL_CONFETTI, 3.0f, 4.0f, 3.0f, 5}, {{0.11, 0.65, 0.50}, {0.12, 0.70, 0.40}, {0.32, 0.74, 0.67}}},
+    {{CONIC_KERNEL_BOX, 1.0f, 0, 0, 0}, {{0.04, 0.02, 0.04}, {0.03, 0.15, 0.07}, {0.03, 0.13, 0.59}}},
+    {{CONIC_KERNEL_BOX, 1.5f, 0, 0, 0}, {{0.03, 0.05, 0.05}, {0.04, 0.09, 0.08}, {0.06, 0.36, 0.15}}},
+    {{CONIC_KERNEL_BOX, 3.0f, 0, 0, 0}, {{0.10, 0.05, 0.11}, {0.11, 0.08, 0.06}, {0.05, 0.19, 0.57}}}};
 
 static const double least_peak = 0.125;
 
@@ -308,7 +309,7 @@ static void search(fixture *f, const kind *of, int i_range, int i_method, long n
     try_splat(f, &s, state, &worst);
   }
   print_worst(&worst, methods[i_method]);
-  CHECK(worst.n_pixels > n / 5);
+  CHECK(worst.n_pixels > n / 20);
   CHECK(worst.worst <= of->bounds[i_range][i_method]);
 }
 
