@@ -3,8 +3,10 @@
 #ifndef CONIC_HOST_H
 #define CONIC_HOST_H
 
+#include <stddef.h>
+#include <stdint.h>
+
 #include "conic/conic.h"
-#include "core/base/base.h"
 
 /* Something in memory, under the name that the arguments call it by: conic/loan.h. */
 typedef struct cli_loan {

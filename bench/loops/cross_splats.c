@@ -270,6 +270,17 @@ static void copy_band(const slot *s, splat_desk *to, const splat_desk *from) {
     copy_kept(to, from);
 }
 
+/* What a pixel shows of a splat; of what is hidden there, a table may leave what it has not looked at. */
+static int shows_the_same(const conic_kept *a, const conic_kept *b, size_t i) {
+  if (memcmp(a->fragments[i].seen_iz, b->fragments[i].seen_iz, sizeof a->fragments[i].seen_iz) != 0)
+    return 0;
+  for (size_t at = 0; at < CONIC_BLOCK_PIXELS; at++)
+    if (a->fragments[i].seen_iz[at] >= a->threshold[at] &&
+        memcmp(&a->fragments[i].q[at], &b->fragments[i].q[at], sizeof(float)) != 0)
+      return 0;
+  return 1;
+}
+
 /* Past the last kept splat there may be anything. */
 static void compare_kept(const splat_desk *a, const splat_desk *b) {
   for (int block = 0; block < a->band.n_blocks; block++) {
@@ -277,7 +288,8 @@ static void compare_kept(const splat_desk *a, const splat_desk *b) {
     size_t n = a->band.n_kept[block];
     CHECK(memcmp(of_a->threshold, of_b->threshold, sizeof of_a->threshold) == 0);
     CHECK(memcmp(of_a->footprint, of_b->footprint, n * sizeof *of_a->footprint) == 0);
-    CHECK(memcmp(of_a->fragments, of_b->fragments, n * sizeof *of_a->fragments) == 0);
+    for (size_t i = 0; i < n; i++)
+      CHECK(shows_the_same(of_a, of_b, i));
     CHECK(memcmp(of_a->scale, of_b->scale, n * sizeof *of_a->scale) == 0);
   }
 }

@@ -71,31 +71,35 @@ static conic_status read_transparency(void *data) {
   return read_material_part(data, 0);
 }
 
-/* How many values an option of a picture has at most; -1 where the word is no option. Of -o, -s and -t, which may have
- * one to three, only numbers are taken for them. */
-static int count_values(const char *word, size_t length) {
+/* How many values an option of a picture has at most; -1 where the word is no option. Some take a word, the others
+ * numbers. */
+static int count_values(const char *word, size_t length, int *takes_word) {
   static const struct {
     const char *name;
     int n;
-  } known[] = {{"-o", 3},  {"-s", 3},     {"-t", 3},       {"-mm", 2}, {"-blendu", 1}, {"-blendv", 1}, {"-clamp", 1},
-               {"-bm", 1}, {"-boost", 1}, {"-imfchan", 1}, {"-cc", 1}, {"-texres", 1}, {"-type", 1}};
+  } known[] = {{"-o", 3},       {"-s", 3},      {"-t", 3},      {"-mm", 2},     {"-bm", 1},
+               {"-boost", 1},   {"-texres", 1}, {"-blendu", 1}, {"-blendv", 1}, {"-clamp", 1},
+               {"-imfchan", 1}, {"-cc", 1},     {"-type", 1}};
+  enum { FIRST_OF_WORDS = 7 };
   for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
-    if (conic_input_is(word, length, known[i].name))
+    if (conic_input_is(word, length, known[i].name)) {
+      *takes_word = i >= FIRST_OF_WORDS;
       return known[i].n;
+    }
   return -1;
 }
 
 /* Passes over [-option value …]; of these only `-clamp on` matters here. */
 static void skip_options(const char **text, size_t *length, conic_texture_wrap *wrap) {
-  for (int left = 0, is_clamp = 0; *length > 0;) {
+  for (int left = 0, is_clamp = 0, takes_word = 0; *length > 0;) {
     size_t n = 0, next;
     double number;
     while (n < *length && (*text)[n] != ' ' && (*text)[n] != '\t')
       n++;
     for (next = n; next < *length && ((*text)[next] == ' ' || (*text)[next] == '\t');)
       next++;
-    int n_values = count_values(*text, n), is_number = conic_number_parse(*text, n, &number) == n;
-    if (n_values < 0 && (left == 0 || (left != 1 && !is_number) || next == *length))
+    int is_number = conic_number_parse(*text, n, &number) == n, n_values = count_values(*text, n, &takes_word);
+    if (n_values < 0 && (left == 0 || (!takes_word && !is_number) || next == *length))
       return; /* the name begins */
     if (n_values < 0 && is_clamp && conic_input_is(*text, n, "on"))
       *wrap = CONIC_WRAP_CLAMP;

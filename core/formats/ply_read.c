@@ -275,10 +275,11 @@ conic_status conic_ply_look(conic_input *input, const conic_read_options *option
   const conic_ply_element *vertices = conic_ply_find_element(&header, "vertex");
   if (vertices && vertices->count <= CONIC_MAX_POINTS && conic_ply_is_plain(header.format, vertices)) {
     status = conic_ply_layout_find(input, &header, vertices, options, 0, &layout);
+    const uint64_t n_there = conic_input_remaining_bytes(input) / vertices->least_row_bytes; /* a file may be cut */
     *shape = (conic_model_shape){.can_part = status == CONIC_OK,
                                  .is_raw = !(layout.fields & (CONIC_SPLATS_TANGENTS | CONIC_SPLATS_NORMALS)),
                                  .needs_survey = conic_ply_layout_has_codes(&layout),
-                                 .n_points = vertices->count,
+                                 .n_points = vertices->count < n_there ? vertices->count : n_there,
                                  .fields = has_faces(&header) || layout.has_harmonics ? 0 : layout.fields};
   }
   conic_ply_header_release(input->context, &header);

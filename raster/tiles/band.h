@@ -66,7 +66,7 @@ static inline uint32_t conic_word_last_row(uint32_t word) {
 #define CONIC_KEPT_SPLATS 512
 
 typedef struct conic_kept_fragments {
-  float q[CONIC_BLOCK_PIXELS];       /* with a profile, the fragment's scale in its place */
+  float q[CONIC_BLOCK_PIXELS];       /* with a profile, of what is seen: the fragment's scale in its place */
   float seen_iz[CONIC_BLOCK_PIXELS]; /* max of the splat's and its plane's; -1 where not covered */
 } conic_kept_fragments;
 

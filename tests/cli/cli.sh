@@ -138,7 +138,7 @@ run_wrong 3 'absent.ply' info absent.ply
 run_wrong 3 'absent.ply' render absent.ply -o outputs/a.pfm
 run_wrong 3 'absent.ply' prepare absent.ply -o outputs/a.ply
 run_wrong 3 'absent.pfm' diff absent.pfm absent.pfm
-printf 'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n' \
+printf 'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0\n' \
   > short.ply
 head -c 5000 /dev/zero > zeros.ply
 : > empty.ply

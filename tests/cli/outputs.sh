@@ -72,7 +72,7 @@ run 2 prepare - --in-place
 run 2 prepare one.ply --in-place --json one.ply
 cmp one.ply half.ply || fail "a wrong use of --in-place writes"
 cp s.ply short.ply
-truncate -s -9 short.ply
+truncate -s 100 short.ply
 cp short.ply before.ply
 run 3 prepare short.ply --in-place
 cmp short.ply before.ply || fail "--in-place loses an input that it cannot read"
