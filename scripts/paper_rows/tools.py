@@ -113,8 +113,7 @@ def read_positions(bench, file):
     if file.endswith(".obj"):
         with open(file, encoding="utf-8") as source:
             return numpy.array([line.split()[1:4] for line in source if line.startswith("v ")], dtype="f8")
-    plain = ["--plain"] if str(file).endswith(".obj") else []  # what mls wrote has sizes, which it would act on in vain
-    bench.run("prepare", file, "-o", bench.path("points.ply"), *plain)
+    bench.run("prepare", file, "-o", bench.path("points.ply"))
     with open(bench.path("points.ply"), "rb") as source:
         header = [line.decode().split() for line in iter(source.readline, b"end_header\n")]
         n_points = next(int(parts[2]) for parts in header if parts[:2] == ["element", "vertex"])
