@@ -9,6 +9,7 @@
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/guard.h"
+#include "core/files/number.h"
 
 /* Progress is reported this often: a few times a second on a fast disk. */
 static const uint64_t report_bytes = 64u << 20;
@@ -271,6 +272,24 @@ conic_status conic_input_rest(conic_input *input, const char **text, size_t *len
   while (status == CONIC_OK && *length > 0 && is_blank((*text)[*length - 1]))
     --*length;
   return status;
+}
+
+conic_status conic_input_numbers(conic_input *input, double *numbers, int room, int *n) {
+  for (*n = 0;;) {
+    const char *word;
+    size_t length;
+    double value;
+    conic_status status = conic_input_word(input, &word, &length);
+    if (status != CONIC_OK)
+      return status;
+    if (length == 0 || word[0] == '#')
+      return CONIC_OK;
+    if (conic_number_parse(word, length, &value) != length)
+      return conic_input_wrong(input, "a value is not a number");
+    if (*n == room)
+      return conic_input_wrong(input, "too many values");
+    numbers[(*n)++] = value;
+  }
 }
 
 conic_status conic_input_wrong(const conic_input *input, const char *format, ...) {

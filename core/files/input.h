@@ -79,6 +79,10 @@ conic_status conic_input_word(conic_input *input, const char **word, size_t *len
  * conic_input_next_line skips it. Errors: as conic_input_line. */
 conic_status conic_input_rest(conic_input *input, const char **text, size_t *length);
 
+/* The numbers up to the line's end or a word that begins with #. Errors: as conic_input_word, and INPUT (a word is no
+ * number, or there are more than `room`). */
+conic_status conic_input_numbers(conic_input *input, double *numbers, int room, int *n);
+
 /* Logs "FILE: what is wrong (line N)" for the current line, and returns INPUT. */
 conic_status conic_input_wrong(const conic_input *input, const char *format, ...) CONIC_AS_PRINTF(2, 3);
 

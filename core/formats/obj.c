@@ -3,7 +3,6 @@
 #include "core/base/base.h"
 #include "core/base/color.h"
 #include "core/base/vectors.h"
-#include "core/files/number.h"
 #include "core/splats/builder.h"
 #include "core/splats/faces.h"
 #include "core/splats/polygon.h"
@@ -37,32 +36,13 @@ typedef struct obj_reader {
 /* A corner's vertex, texture coordinate and normal; CONIC_NO_CORNER where it lacks one. */
 typedef uint32_t face_corner[3];
 
-/* The numbers up to the end of the line; more than `room` are an error. */
-static conic_status read_numbers(const obj_reader *reader, double *numbers, int room, int *n) {
-  for (*n = 0;;) {
-    const char *word;
-    size_t length;
-    double value;
-    conic_status status = conic_input_word(reader->input, &word, &length);
-    if (status != CONIC_OK)
-      return status;
-    if (length == 0 || word[0] == '#')
-      return CONIC_OK;
-    if (conic_number_parse(word, length, &value) != length)
-      return conic_input_wrong(reader->input, "a value is not a number");
-    if (*n == room)
-      return conic_input_wrong(reader->input, "too many values");
-    numbers[(*n)++] = value;
-  }
-}
-
 /* v x y z, then nothing, a weight (unused), r g b, or r g b a. Colours are sRGB-encoded, 0 to 1. */
 static conic_status read_vertex(void *data) {
   obj_reader *reader = data;
   double values[7];
   int n;
   conic_splats *points = &reader->builder.model->points;
-  conic_status status = read_numbers(reader, values, 7, &n);
+  conic_status status = conic_input_numbers(reader->input, values, 7, &n);
   if (status != CONIC_OK)
     return status;
   if (n < 3 || n == 5)
@@ -87,7 +67,7 @@ static conic_status read_normal(void *data) {
   obj_reader *reader = data;
   double values[3];
   int n;
-  conic_status status = read_numbers(reader, values, 3, &n);
+  conic_status status = conic_input_numbers(reader->input, values, 3, &n);
   if (status == CONIC_OK && n != 3)
     status = conic_input_wrong(reader->input, "a normal has 3 values");
   if (status == CONIC_OK && reader->counts[NORMAL] >= CONIC_MAX_POINTS)
@@ -107,7 +87,7 @@ static conic_status read_texture(void *data) {
   obj_reader *reader = data;
   double values[3] = {0.0, 0.0, 0.0};
   int n;
-  conic_status status = read_numbers(reader, values, 3, &n);
+  conic_status status = conic_input_numbers(reader->input, values, 3, &n);
   if (status == CONIC_OK && n < 1)
     return conic_input_wrong(reader->input, "a texture coordinate has 1 to 3 values");
   if (status == CONIC_OK && reader->faces && reader->counts[TEXTURE] >= CONIC_MAX_POINTS)

@@ -1,14 +1,14 @@
 /* OFF: a polygon mesh as text. [ST][C][N]OFF says what a vertex has beside its place; many files leave that out. */
 #include "core/base/base.h"
 #include "core/base/color.h"
-#include "core/files/number.h"
 #include "core/formats/readers.h"
 #include "core/splats/face_colors.h"
 #include "core/splats/faces.h"
 #include "core/splats/polygon.h"
 #include "core/splats/raw_colors.h"
 
-enum { MOST_NUMBERS = 16 };
+/* On a line: enough for polygons of a thousand corners. */
+enum { MOST_NUMBERS = 1024 };
 
 typedef struct off_reader {
   conic_input *input;
@@ -19,28 +19,15 @@ typedef struct off_reader {
   uint64_t n_vertices, n_faces;
 } off_reader;
 
-/* The numbers of a line, as many as there is room for; lines without any are passed over. */
-static conic_status next_line_numbers(off_reader *reader, double *numbers, int *n, int *is_done) {
-  for (*n = 0; *n == 0 && !*is_done;) {
-    for (;;) {
-      const char *word;
-      size_t length;
-      double value;
-      conic_status status = conic_input_word(reader->input, &word, &length);
-      if (status != CONIC_OK)
-        return status;
-      if (length == 0 || word[0] == '#')
-        break;
-      if (conic_number_parse(word, length, &value) != length)
-        return conic_input_wrong(reader->input, "a value is not a number");
-      if (*n < MOST_NUMBERS)
-        numbers[(*n)++] = value;
-    }
-    conic_status status = conic_input_next_line(reader->input, is_done);
-    if (status != CONIC_OK)
-      return status;
+/* The numbers of the next line that has some; *n is 0 where the file ends before. */
+static conic_status next_line_numbers(off_reader *reader, double numbers[MOST_NUMBERS], int *n, int *is_done) {
+  conic_status status = CONIC_OK;
+  for (*n = 0; status == CONIC_OK && *n == 0 && !*is_done;) {
+    status = conic_input_numbers(reader->input, numbers, MOST_NUMBERS, n);
+    if (status == CONIC_OK)
+      status = conic_input_next_line(reader->input, is_done);
   }
-  return CONIC_OK;
+  return status;
 }
 
 /* The first word, and the counts, which may stand on its line. */
@@ -116,6 +103,7 @@ static conic_status end_face(off_reader *reader, size_t first, const double *num
   conic_context *context = reader->input->context;
   conic_model *model = reader->builder.model;
   double linear[3] = {1.0, 1.0, 1.0}, largest = 0.0;
+  n = n < 4 ? n : 4;
   conic_status status = CONIC_OK;
   for (int i = 0; i < n && n >= 3; i++)
     largest = numbers[i] > largest ? numbers[i] : largest;
@@ -130,54 +118,39 @@ static conic_status end_face(off_reader *reader, size_t first, const double *num
   return status;
 }
 
-static conic_status wrong_corner(const off_reader *reader, double index) {
-  return conic_input_wrong(reader->input, "vertex index %g, but there are only %llu vertices", index,
-                           (unsigned long long)reader->n_vertices);
+/* The fan of a face's corners, once its line is read. */
+static conic_status add_fan(off_reader *reader, const double *corners, int n) {
+  conic_status status = CONIC_OK;
+  for (int i = 0; i < n; i++)
+    if (!(corners[i] >= 0.0 && corners[i] < (double)reader->n_vertices))
+      return conic_input_wrong(reader->input, "vertex index %g, but there are only %llu vertices", corners[i],
+                               (unsigned long long)reader->n_vertices);
+  for (int i = 2; i < n && status == CONIC_OK; i++)
+    status = conic_builder_add_triangle(&reader->builder, (uint32_t)corners[0], (uint32_t)corners[i - 1],
+                                        (uint32_t)corners[i]);
+  return status;
 }
 
 /* A face: the number of its corners, these, and perhaps a colour; *has_face is 0 where the file ends before. */
 static conic_status read_face(off_reader *reader, int *is_done, int *has_face) {
   const size_t first = reader->builder.model->n_triangles;
-  uint32_t corners[2] = {0, 0};
-  double behind[4], n_corners = -1.0;
-  int n_behind = 0;
-  *has_face = 0;
-  for (double i = -1.0;; i += 1.0) {
-    const char *word;
-    size_t length;
-    double value;
-    conic_status status = conic_input_word(reader->input, &word, &length);
-    if (status != CONIC_OK)
-      return status;
-    const int is_end = length == 0 || word[0] == '#';
-    if (!is_end && conic_number_parse(word, length, &value) != length)
-      return conic_input_wrong(reader->input, "a value is not a number");
-    if (is_end && n_corners < 0.0) { /* an empty line */
-      status = conic_input_next_line(reader->input, is_done);
-      if (status != CONIC_OK || *is_done)
-        return status;
-      i = -2.0;
-      continue;
-    }
-    if (is_end && i < n_corners)
-      return conic_input_wrong(reader->input, "a face has fewer corners than it says");
-    if (is_end)
-      break;
-    if (i < 0.0)
-      n_corners = value;
-    else if (i < n_corners) {
-      if (!(value >= 0.0 && value < (double)reader->n_vertices))
-        return wrong_corner(reader, value);
-      if (i >= 2.0)
-        status = conic_builder_add_triangle(&reader->builder, corners[0], corners[1], (uint32_t)value);
-      corners[i > 0.0] = (uint32_t)value;
-      if (status != CONIC_OK)
-        return status;
-    } else if (n_behind < 4)
-      behind[n_behind++] = value;
+  double numbers[MOST_NUMBERS];
+  int n;
+  conic_status status = conic_input_numbers(reader->input, numbers, MOST_NUMBERS, &n);
+  while (status == CONIC_OK && n == 0 && !*is_done) { /* an empty line */
+    status = conic_input_next_line(reader->input, is_done);
+    if (status == CONIC_OK && !*is_done)
+      status = conic_input_numbers(reader->input, numbers, MOST_NUMBERS, &n);
   }
-  *has_face = 1;
-  conic_status status = end_face(reader, first, behind, n_behind);
+  *has_face = n > 0;
+  if (status != CONIC_OK || n == 0)
+    return status;
+  if (!(numbers[0] >= 0.0 && numbers[0] <= (double)(n - 1)))
+    return conic_input_wrong(reader->input, "a face has fewer corners than it says");
+  const int n_corners = (int)numbers[0];
+  status = add_fan(reader, numbers + 1, n_corners);
+  if (status == CONIC_OK)
+    status = end_face(reader, first, numbers + 1 + n_corners, n - 1 - n_corners);
   return status == CONIC_OK ? conic_input_next_line(reader->input, is_done) : status;
 }
 
