@@ -178,10 +178,13 @@ static conic_status read_binary(stl_reader *reader) {
   return status;
 }
 
-/* Text begins with "solid" and goes on with words; binary files may begin so, too. */
+/* Text begins with "solid" and goes on with words. A binary file may begin so, too: it is as long as it says. */
 static int is_text(const conic_input *input) {
   const unsigned char *bytes = conic_input_bytes(input);
   size_t n = conic_input_available(input), blanks = 0;
+  if (n >= HEAD_BYTES &&
+      conic_input_remaining_bytes(input) == HEAD_BYTES + FACE_BYTES * (uint64_t)conic_load_32(bytes + HEAD_BYTES - 4))
+    return 0;
   while (blanks < n && bytes[blanks] && strchr(" \t\r\n", bytes[blanks]))
     blanks++;
   n = n < 512 ? n : 512;
