@@ -129,6 +129,16 @@ static int list_ways(axis_job *job) {
   return exit_code;
 }
 
+/* Whether an option of the way decides the time alone. */
+static int is_of_work(const cli_effects_job *effects, const cli_chart_way *way) {
+  for (int i = 0; i < effects->n_given; i++)
+    for (int k = 0; k < way->n_factors; k++)
+      if (effects->given[i].acts.is_work &&
+          strcmp(way->words[2 * k] + strspn(way->words[2 * k], "-"), effects->given[i].name) == 0)
+        return 1;
+  return 0;
+}
+
 static int open_ways(axis_job *job) {
   cli_axis_chart *chart = job->chart;
   const cli_charts_beside *beside = &chart->asked.beside;
@@ -141,9 +151,11 @@ static int open_ways(axis_job *job) {
   for (int i = 0; i < n && exit_code == CLI_DONE; i++) {
     chart->points[i].way = job->ways[i];
     exit_code = open_way(job, job->ways[i].i_scene, &job->ways[i], &job->points[i]);
+    chart->points[i].is_of_work = is_of_work(&job->points[i].scene.effects, &job->ways[i]);
   }
   for (int i = 0; i < beside->n; i++) {
     cli_chart_way *way = &chart->points[n + i].way;
+    chart->points[n + i].is_of_work = 1;
     snprintf(way->axis, sizeof way->axis, "beside");
     snprintf(way->value, sizeof way->value, "%s", beside->pictures[i].name);
   }
@@ -296,14 +308,11 @@ double cli_axis_cost(const cli_axis_point *point, cli_chart_cost cost) {
                                        : (double)point->bytes;
 }
 
-/* Whether two points are the same picture of the same things: their times then differ by chance, unless the axis is one
+/* Whether two points are the same picture of the same things: their times then differ by chance, unless the way is one
  * that changes no picture. */
 static int is_repeated(const cli_axis_point *p, const cli_axis_point *earlier) {
-  static const char *const of_work[] = {"passes", "isa", "device", "tile", "beside"};
-  for (size_t i = 0; i < sizeof of_work / sizeof of_work[0]; i++)
-    if (strcmp(p->way.axis, of_work[i]) == 0)
-      return 0;
-  return p->hash == earlier->hash && p->splats == earlier->splats && p->triangles == earlier->triangles;
+  return !p->is_of_work && p->hash == earlier->hash && p->splats == earlier->splats &&
+         p->triangles == earlier->triangles;
 }
 
 /* Whether q is nearer than p and no dearer, or as near and cheaper. Times that noise may have made are none. */
