@@ -114,7 +114,7 @@ set(found_mpi ${MPI_C_FOUND})
 foreach(dependency "openexr:OpenEXR (EXR images)" "png:libpng (PNG images)"
         "zlib:zlib (compressed deep images, Gaussian scenes in .spz)"
         "openimageio:OpenImageIO (TIFF, JPEG … images, and PNG without libpng)"
-        "assimp:Assimp (STL, OFF, glTF, 3MF, DAE, FBX … meshes)" "opencl:OpenCL (other devices)"
+        "assimp:Assimp (glTF, 3MF, DAE, FBX … meshes)" "opencl:OpenCL (other devices)"
         "zstd:zstd (layered point clouds, Gaussian scenes in .spz)" "webp:libwebp (Gaussian scenes in .sog)" "xml:libxml2 (scans in .e57)" "brotli:libbrotlidec (points of Potree 2)" "curl:CURL (layered clouds from web servers)"
         "mpi:MPI (the program conic-mpi)")
   string(REGEX MATCH "^([a-z]+):(.*)$" matched ${dependency})

@@ -1,10 +1,6 @@
 #include "lod/planner/plan.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/real.h"
+#include "core/base/base.h"
 
 /* Sorts by falling errors, which order like their bits as none is negative, and keeps the order of equals. `other` has
  * room for as many. The result is in `openings`. */
