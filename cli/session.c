@@ -11,6 +11,7 @@
 #include "cli/stopper.h"
 #include "core/base/base.h"
 #include "core/files/guard.h"
+#include "core/image/image_common.h"
 #include "shots/executor.h"
 
 /* Messages may come from any of the context's threads, and each must first take the progress bar off the screen. */
@@ -234,8 +235,24 @@ static int on_progress(void *cookie, const char *task, double fraction) {
   return atomic_load(&interrupted_at_ms) != 0;
 }
 
+/* Whether it was said before: files are read several times, and what is wrong with them is said once. */
+static int is_said_again(cli_session *session, const char *message) {
+  enum { ROOM = sizeof session->said / sizeof session->said[0] };
+  const uint64_t hash = conic_hash_bytes(message, strlen(message));
+  int is_known = 0;
+  pthread_mutex_lock(&screen);
+  for (size_t i = 0; i < ROOM; i++)
+    is_known |= session->said[i] == hash;
+  if (!is_known)
+    session->said[session->n_said++ % ROOM] = hash;
+  pthread_mutex_unlock(&screen);
+  return is_known;
+}
+
 static void on_log(void *cookie, conic_log_level level, const char *message) {
   cli_session *session = cookie;
+  if (level == CONIC_LOG_WARNING && is_said_again(session, message))
+    return;
   if (session->host) {
     say_to_host(session->host, level, message);
     return;

@@ -13,6 +13,8 @@ typedef struct cli_session {
   const char *command; /* the sub-command's name */
   int threads;         /* --threads; 0: all */
   int is_quiet, is_verbose;
+  uint64_t said[16];     /* hashes of the last warnings; 0: none */
+  size_t n_said;         /* warnings, each once */
   int has_bar;           /* there is a terminal that can show one, and it is wanted */
   const char *json_path; /* --json; null: none */
   char task[32];         /* what the progress bar is about; empty: nothing yet */

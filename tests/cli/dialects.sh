@@ -131,6 +131,10 @@ warned 'fewer than 3 corners are left out: 1'
 head -c -8 bytes.ply > cut.ply # within the face
 facts cut.ply '^points +4$' '^fields +positions, colors$'
 warned 'ends within face 0 of 1'
+for words in 'info --check cut.ply' 'layer cut.ply -o c.lpc'; do # which read it several times
+  run 0 $words
+  [[ $(grep -c 'ends within face 0 of 1' err) -eq 1 ]] || fail "$words: not one warning: $(cat err)"
+done
 { printf '2\n2\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n'; printf '%s 1 2 0.5\n' 1 2 3; } > cut.ptx
 facts cut.ptx '^points +3$'
 warned 'ends before the last 1 places'
