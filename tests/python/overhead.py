@@ -1,6 +1,7 @@
 """What drawing from Python takes more than the library itself does: prints the medians of pictures that are drawn in
-turns by conic_render_samples, which keeps its renderer and its image, and by conic.render. The same arrays, the same
-camera, the same bits. Run by hand:
+turns by C's ways and by conic.render. The same arrays, the same camera, the same bits. C draws arrays as any source is
+drawn (conic_lend, conic_source_open, conic_shot_draw), or by conic_render_samples alone, which trusts them: a source
+looks at each number whether it is finite. Both keep their renderer and their image. Run by hand:
 CONIC_LIBRARY=…/libconic-hosted.so PYTHONPATH=python python3 tests/python/overhead.py [SPLATS]
 
 Times are the process's, of all its threads: what else the machine does hardly counts."""
@@ -45,6 +46,16 @@ class Library:
                                               ctypes.byref(image), None)
         assert status == 0
 
+    def draw_shot(self, splats, shot, image):
+        name, source = b"memory:splats:1", ctypes.c_void_p()
+        names = (ctypes.c_char_p * 1)(name)
+        status = (library.conic_lend(self.context, name, ctypes.byref(splats._struct)) or
+                  library.conic_source_open(self.context, names, ctypes.c_size_t(1), None, ctypes.byref(source)) or
+                  library.conic_shot_draw(source, self.renderer, ctypes.byref(shot), ctypes.byref(image), None))
+        assert status == 0
+        library.conic_source_close(source)
+        library.conic_take_back_loans(self.context)
+
 
 def times_of_turns(draws):
     """The times of each in milliseconds, a row a turn."""
@@ -66,20 +77,23 @@ def compare(name, splats, size, threads):
     def draw():
         return conic.render(splats, camera, plain=True, method="conic", samples=1, threads=threads)
 
-    shot = draw().shot if hasattr(conic, "Shot") else None
-    draws = [lambda: c.draw(splats, camera, image), draw]
-    if shot is not None:
-        draws.append(lambda: conic.render(splats, shot, threads=threads))
-    for call in draws:
+    of_c = layouts.Shot()
+    library.conic_shot_init_sized(ctypes.byref(of_c), ctypes.c_size_t(ctypes.sizeof(of_c)))
+    of_c.camera, of_c.render.method = camera._struct, 0
+    shot = draw().shot
+    draws = [lambda: c.draw_shot(splats, of_c, image), lambda: c.draw(splats, camera, image), draw,
+             lambda: conic.render(splats, shot, threads=threads)]
+    for call in draws[:2]:
+        arrays["rgba"][:] = 0
         call()
-    assert conic.Picture(arrays).hash() == draw().hash()
+        assert conic.Picture(arrays).hash() == draw().hash()
     gc.collect()
     times = times_of_turns(draws)
     took = numpy.median(times, axis=0)
-    ratios = numpy.median(times / times[:, :1], axis=0)  # within a turn, since the machine's rate changes between them
-    said = "".join(f"   by a shot {took[2]:9.3f}  {ratios[2]:5.3f}" if shot is not None else "")
-    print(f"{name:28} {threads} threads   C {took[0]:9.3f} ms   Python {took[1]:9.3f}  {ratios[1]:5.3f}{said}",
-          flush=True)
+    by_shot, alone = (numpy.median(times / times[:, i:i + 1], axis=0) for i in (0, 1))  # within a turn: rates change
+    print(f"{name:22} {threads} threads   C: a shot {took[0]:8.3f} ms, the splats alone {took[1]:8.3f}   "
+          f"Python {took[2]:8.3f}: {by_shot[2]:6.3f} and {alone[2]:6.3f}   by a shot {took[3]:8.3f}: "
+          f"{by_shot[3]:6.3f} and {alone[3]:6.3f}", flush=True)
 
 
 def columns_of(splats):
@@ -88,6 +102,10 @@ def columns_of(splats):
 
 def main():
     library.conic_render_samples.argtypes = [ctypes.c_void_p] * 5 + [ctypes.c_int] + [ctypes.c_void_p] * 2
+    library.conic_lend.argtypes = [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p]
+    library.conic_source_open.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t] + [ctypes.c_void_p] * 2
+    library.conic_shot_draw.argtypes = [ctypes.c_void_p] * 5
+    library.conic_source_close.argtypes = library.conic_take_back_loans.argtypes = [ctypes.c_void_p]
     n = int(float(sys.argv[1])) if len(sys.argv) > 1 else 1000000
     rows = columns_of(conic.make("sphere", n=n).splats())
     columns = [tuple(numpy.ascontiguousarray(part) for part in array.T) for array in rows]
