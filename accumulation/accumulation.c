@@ -1,11 +1,5 @@
-#include <math.h>
-#include <string.h>
-
 #include "accumulation/accumulation_struct.h"
 #include "accumulation/sequence.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/threads.h"
 #include "core/image/image_common.h"
 
 size_t conic_accumulation_channel(unsigned planes, conic_plane plane) {

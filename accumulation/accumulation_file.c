@@ -5,13 +5,9 @@
  *   4 × 8     first sample; number of samples; of these, those in the half; key
  *   16 a channel and pixel: the whole part, and the one behind the point
  *   8 bytes   a hash of all that */
-#include <errno.h>
-#include <string.h>
 
 #include "accumulation/accumulation_struct.h"
 #include "core/base/byte_order.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/base/random.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"

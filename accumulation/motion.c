@@ -1,12 +1,7 @@
 #include "conic/motion.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "accumulation/motion_file.h"
 #include "conic/accumulate.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/base/vectors.h"
 #include "core/files/file.h"
 

@@ -1,10 +1,6 @@
 /* [{"input": 0, "frame": 0, "matrix": [[…], […], […], […]]}, {"input": 1, "frame": 1, "file": "…"}, …] */
 #include "accumulation/motion_file.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
 #include "core/files/json_read.h"
 
 enum { MOST_INPUTS = 1 << 20 };

@@ -1,5 +1,4 @@
 /* Where a sample looks from: its place in the pixel and on the lens; and cameras between two others. */
-#include <math.h>
 #include <string.h>
 
 #include "accumulation/disc_point.h"

@@ -5,7 +5,6 @@
 
 #include "cli/device_option.h"
 #include "cli/json_write.h"
-#include "cli/session.h"
 
 /* --- scenes (bench/bench_scene.c) --- */
 

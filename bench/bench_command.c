@@ -1,6 +1,4 @@
 /* conic bench: how fast, where the time goes, and that the pictures are right meanwhile. */
-#include <stdlib.h>
-#include <string.h>
 
 #include "bench/bench_job.h"
 #include "bench/loops/cross_all.h"

@@ -1,6 +1,4 @@
 /* An earlier run of `conic bench`, beside this one: ratios, and no verdict on them. */
-#include <math.h>
-#include <string.h>
 
 #include "bench/bench.h"
 #include "core/files/json_read.h"

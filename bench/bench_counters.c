@@ -1,8 +1,5 @@
 /* Cycles and instructions, where the machine counts them for us: Linux's perf events, which virtual machines often
  * lack. */
-#include <math.h>
-#include <stdint.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "bench/bench.h"

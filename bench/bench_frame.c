@@ -1,11 +1,7 @@
 /* One line of a benchmark: frames drawn, timed, and compared with what plain C draws. */
-#include <stddef.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "bench/bench.h"
 #include "cli/shell.h"
-#include "core/base/real.h"
 #include "core/image/image_common.h"
 
 const cli_bench_method cli_bench_methods[CLI_BENCH_N_METHODS] = {

@@ -1,10 +1,7 @@
 /* Scenes of Gaussians on the bench: a profile takes the place of a method. docs/reference/benchmark.md says which stage
  * is which. */
-#include <stdlib.h>
-#include <string.h>
 
 #include "bench/bench.h"
-#include "conic/gaussian_render.h"
 #include "gaussians/draw/gaussian_footprint.h"
 #include "gaussians/scene/gaussian_set.h"
 #include "gaussians/scene/made_gaussians.h"

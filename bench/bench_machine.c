@@ -1,11 +1,6 @@
 /* The machine beneath: how fast its cores read, write and copy memory, and compute in the widest vectors. */
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "bench/bench.h"
-#include "core/base/memory.h"
-#include "core/base/threads.h"
 
 /* Far beyond the last cache of any machine that we know; a thread's share is cut in slices. */
 static const size_t buffer_bytes = (size_t)256 << 20;

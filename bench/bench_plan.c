@@ -1,7 +1,4 @@
 /* From the lists on the command line to the lines that are measured. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "bench/bench_job.h"
 #include "cli/arguments.h"

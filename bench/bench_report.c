@@ -1,5 +1,4 @@
 /* What `conic bench` prints and writes of its lines. */
-#include <math.h>
 
 #include "bench/bench.h"
 

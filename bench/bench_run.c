@@ -1,10 +1,7 @@
 /* Measures the lines of a plan: opens their scenes, keeps the threads and the pictures that they share. */
-#include <stdlib.h>
-#include <string.h>
 
 #include "bench/bench_job.h"
 #include "core/base/context_struct.h"
-#include "core/base/threads.h"
 
 /* What the lines of a run share. */
 typedef struct bench_run {

@@ -1,6 +1,4 @@
 /* The scenes of `conic bench`: analytic ones, mixes of splats by their size on the screen, files. */
-#include <math.h>
-#include <string.h>
 
 #include "bench/bench.h"
 #include "cli/arguments.h"

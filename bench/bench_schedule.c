@@ -1,13 +1,7 @@
 /* What a frame would take more threads, by the times of its tasks. */
-#include <stdatomic.h>
-#include <stdlib.h>
-#include <string.h>
-#include <time.h>
 
 #include "bench/bench.h"
-#include "core/base/clock.h"
 #include "core/base/context_struct.h"
-#include "core/base/threads.h"
 
 enum { N_STARTS = 51 };
 

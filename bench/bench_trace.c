@@ -1,9 +1,6 @@
 /* How long the tasks of a frame take, one after the other. */
-#include <stdlib.h>
-#include <string.h>
 
 #include "bench/bench.h"
-#include "core/base/clock.h"
 
 /* Makes room in an array, of which this is the address. Returns 0 where there is no memory. */
 static int make_trace_room(cli_bench_trace *trace, void *array, size_t wanted, size_t *room, size_t size) {

@@ -2,11 +2,7 @@
 #ifndef CONIC_CHART_H
 #define CONIC_CHART_H
 
-#include <stddef.h>
-#include <stdio.h>
-
 #include "cli/session.h"
-#include "conic/conic.h"
 #include "core/files/file.h"
 
 typedef struct cli_chart_scene {

@@ -1,9 +1,5 @@
 #include "bench/chart_axes.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "bench/chart_job.h"
 #include "cli/commands/gaussian_commands.h"
 #include "cli/opening_key.h"

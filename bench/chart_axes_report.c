@@ -1,11 +1,7 @@
 /* The chart of a user's scenes: its table, its picture, and what is printed. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "bench/chart_axes.h"
 #include "bench/plot.h"
-#include "core/files/file.h"
 
 /* --- the table --- */
 

@@ -1,18 +1,12 @@
 /* conic chart: every method and kernel on scenes whose surface is known, every profile of a Gaussian scene, or any
  * scene along the options of conic render: error over time. */
 
-#include <errno.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "bench/bench.h"
 #include "bench/chart_axes.h"
 #include "bench/chart_gaussians.h"
 #include "bench/chart_job.h"
 #include "bench/chart_methods.h"
-#include "cli/arguments.h"
 #include "cli/command.h"
-#include "cli/json_write.h"
 #include "cli/outputs.h"
 #include "core/files/disk.h"
 

@@ -1,6 +1,4 @@
 /* What the charts measure, and how they write it. */
-#include <math.h>
-#include <string.h>
 
 #include "bench/chart.h"
 #include "core/image/image_common.h"

@@ -1,11 +1,6 @@
 #include "bench/chart_gaussians.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 #include "bench/bench.h"
-#include "conic/gaussian_oracle.h"
-#include "core/base/message.h"
 
 const char *const cli_truth_names[CLI_N_TRUTHS] = {"overlap", "volume"};
 

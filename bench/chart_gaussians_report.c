@@ -1,5 +1,4 @@
 /* The chart of a Gaussian scene as a table, as JSON, and as a picture. */
-#include <math.h>
 
 #include "bench/chart_gaussians.h"
 #include "bench/plot.h"

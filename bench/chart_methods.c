@@ -2,9 +2,6 @@
  */
 #include "bench/chart_methods.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "core/image/image_common.h"
 
 /* A kernel of the chart. */

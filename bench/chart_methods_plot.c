@@ -1,5 +1,4 @@
 /* The pictures of the chart of methods: an error over the time of a frame, a panel a scene. */
-#include <math.h>
 
 #include "bench/chart_methods.h"
 #include "bench/plot.h"

@@ -1,9 +1,5 @@
 #include "bench/chart.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "core/base/color.h"
 #include "core/base/trigonometry.h"
 

@@ -1,8 +1,5 @@
 #include "bench/chart_ways.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "cli/arguments.h"
 
 /* What the values of an option are where none are named, and of which scenes. */

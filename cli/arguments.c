@@ -6,7 +6,6 @@
 #include "cli/command.h"
 #include "cli/host.h"
 #include "cli/option_check.h"
-#include "core/base/base.h"
 #include "core/base/nearest_word.h"
 #include "core/files/disk.h"
 #include "core/formats/text_columns.h"

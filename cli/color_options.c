@@ -1,7 +1,5 @@
 #include "cli/color_options.h"
 
-#include <string.h>
-
 #include "core/base/nearest_word.h"
 
 const char *const cli_color_words[] = {"auto", "rgb", "intensity", "height", "classification", "normal", NULL};

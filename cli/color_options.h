@@ -4,7 +4,6 @@
 
 #include "cli/arguments.h"
 #include "cli/json_write.h"
-#include "conic/coloring.h"
 
 extern const char *const cli_color_words[], *const cli_ramp_words[]; /* for completion */
 

@@ -1,5 +1,4 @@
 /* All sub-commands, by their names. */
-#include <string.h>
 
 #include "cli/command.h"
 #include "core/base/nearest_word.h"

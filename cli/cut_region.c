@@ -1,7 +1,6 @@
 #include "cli/cut_region.h"
 
 #include "cli/arguments.h"
-#include "core/base/base.h"
 #include "core/files/input.h"
 #include "core/files/number.h"
 #include "core/splats/clip.h"

@@ -1,6 +1,5 @@
 #include "cli/device_option.h"
 
-#include "core/base/base.h"
 #include "core/lanes/instruction_sets.h"
 #include "opencl/device_name.h"
 

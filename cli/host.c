@@ -2,8 +2,6 @@
 
 #include "cli/command.h"
 #include "cli/host_keeps.h"
-#include "cli/opening_key.h"
-#include "core/base/base.h"
 #include "core/files/guard.h"
 #include "shots/shot_inputs.h"
 #include "shots/shot_key.h"

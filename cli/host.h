@@ -3,9 +3,6 @@
 #ifndef CONIC_HOST_H
 #define CONIC_HOST_H
 
-#include <stddef.h>
-#include <stdint.h>
-
 #include "conic/conic.h"
 
 /* Something in memory, under the name that the arguments call it by: conic/loan.h. */

@@ -1,7 +1,5 @@
 #include "cli/host_keeps.h"
 
-#include "cli/opening_key.h"
-#include "core/base/base.h"
 #include "core/base/context_struct.h"
 #include "core/base/machine.h"
 

@@ -6,7 +6,6 @@
 #include "cli/device_option.h"
 #include "cli/host.h"
 #include "cli/opening_key.h"
-#include "cli/session.h"
 
 /* Adds a record to the host's facts. */
 void cli_host_note(cli_host *host, char type, const char *key, const void *value, size_t n_bytes);

@@ -3,8 +3,6 @@
 #include <inttypes.h>
 
 #include "cli/host_keeps.h"
-#include "cli/session.h"
-#include "core/base/base.h"
 #include "core/files/file.h"
 
 /* What has_items remembers of each open object or array. */

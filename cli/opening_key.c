@@ -1,7 +1,5 @@
 #include "cli/opening_key.h"
 
-#include <string.h>
-
 #include "shots/shot_key.h"
 
 /* Of what reads parts of a file, or a URL. A deadline is another for each picture, but whether there is one counts: it

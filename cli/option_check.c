@@ -1,7 +1,6 @@
 /* Whether options change anything. */
 #include "cli/option_check.h"
 
-#include <string.h>
 #include <strings.h>
 
 _Static_assert(CLI_N_FACTS <= 64, "facts are bits of an unsigned long long");

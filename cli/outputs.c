@@ -2,7 +2,6 @@
 
 #include <strings.h>
 
-#include "core/base/base.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 

@@ -3,7 +3,6 @@
 #define CONIC_OUTPUTS_H
 
 #include "cli/session.h"
-#include "conic/image.h"
 
 /* Wrong usage where two of the run's outputs (null entries are fine), --json's included, go to standard output or, by
  * whatever names, to the same file; CLI_RESOURCE where the folder that one would stand in is not there or may not be

@@ -1,7 +1,6 @@
 /* The program, but for its main: finds the sub-command and hands over. */
 
 #include "cli/command.h"
-#include "core/base/base.h"
 
 static void print_features(const char *label, int available) {
   fputs(label, stdout);

@@ -5,11 +5,9 @@
 #include <stdarg.h>
 #include <stdatomic.h>
 
-#include "cli/host.h"
 #include "cli/host_keeps.h"
 #include "cli/shell.h"
 #include "cli/stopper.h"
-#include "core/base/base.h"
 #include "core/files/guard.h"
 #include "core/image/image_common.h"
 #include "shots/executor.h"

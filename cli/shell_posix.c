@@ -3,10 +3,7 @@
 #include <sys/ioctl.h>
 #include <sys/resource.h>
 #include <sys/utsname.h>
-#include <time.h>
 #include <unistd.h>
-
-#include "core/base/base.h"
 
 #if defined(__GLIBC__)
 #include <malloc.h>

@@ -7,7 +7,6 @@
 #include <stdatomic.h>
 #include <unistd.h>
 
-#include "core/base/base.h"
 #include "core/files/file.h"
 
 enum { PATIENCE_MS = 300 };

@@ -1,7 +1,5 @@
 #include "cli/team_report.h"
 
-#include <stdlib.h>
-
 void cli_team_report_gather(const cli_session *session, cli_team_work work, cli_team_report *report) {
   const conic_executor *team = session->team;
   cli_team_part own = {.n_units = work.n, .peak_bytes = cli_peak_rss_bytes(), .busy_seconds = work.busy_seconds};

@@ -1,7 +1,5 @@
 #include "cli/tell.h"
 
-#include "core/base/base.h"
-
 /* A line that is put together piece by piece; what is too long is cut. */
 typedef struct text_line {
   char text[768];

@@ -1,7 +1,5 @@
 #include "conic/version.h"
 
-#include <stddef.h>
-
 #include "core/assimp/assimp_read.h"
 #include "core/pictures/openimageio_bridge.h"
 

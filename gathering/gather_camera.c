@@ -1,6 +1,3 @@
-#include "conic/gather.h"
-
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/image/image_common.h"
 #include "core/image/view_arguments.h"

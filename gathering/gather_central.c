@@ -1,7 +1,6 @@
 /* Pictures of cameras that see everything from one eye: each sample takes the pixel that its ray goes through, from the
  * sides of a cube or from one wide view. */
 
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/image/image_common.h"
 #include "gathering/gather_views.h"

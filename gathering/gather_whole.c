@@ -1,6 +1,5 @@
 /* Pictures that consist of views, pixel by pixel: the sides of a cube, and views from far away. */
 
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/image/image_common.h"
 #include "gathering/gather_views.h"

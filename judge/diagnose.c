@@ -1,6 +1,5 @@
 /* Finds the mistake that explains a picture: docs/reference/diagnosis.md. */
 
-#include "core/base/base.h"
 #include "core/base/color.h"
 #include "gaussians/scene/gaussian_set.h"
 #include "judge/diagnosis_samples.h"

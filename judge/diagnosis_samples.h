@@ -3,7 +3,6 @@
 #define CONIC_DIAGNOSIS_SAMPLES_H
 
 #include "conic/diagnosis.h"
-#include "conic/gaussian_judge.h"
 #include "judge/planted.h"
 
 /* The compared values of a pixel. */

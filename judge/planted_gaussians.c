@@ -1,7 +1,3 @@
-#include "judge/diagnosis_samples.h"
-
-#include "conic/gaussians.h"
-#include "core/base/base.h"
 #include "core/base/radix.h"
 #include "core/base/vectors.h"
 #include "core/splats/kernel.h"
@@ -9,7 +5,6 @@
 #include "gaussians/draw/view_rays.h"
 #include "gaussians/scene/activation.h"
 #include "gaussians/scene/gaussian_set.h"
-#include "judge/planted.h"
 #include "judge/planted_composite.h"
 
 /* --- sets --- */

@@ -1,10 +1,5 @@
 #include "lighting/light_work.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "core/base/memory.h"
-#include "core/base/threads.h"
 #include "core/image/image_common.h"
 
 enum { NO_RECEIVER, RECEIVER, RECEIVER_AT_EDGE, MOST_EDGE_PX = 4 };

@@ -1,9 +1,5 @@
 /* The light that a picture gets from lamps. */
-#include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/threads.h"
 #include "core/image/image_common.h"
 #include "lighting/lamps.h"
 #include "lighting/light_work.h"

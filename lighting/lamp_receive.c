@@ -1,12 +1,10 @@
 /* The part of a lamp's light that nothing hides: many receivers at a time, with one map for each side. */
-#include <math.h>
 #include <string.h>
 
 #include "core/base/memory.h"
 #include "core/base/threads.h"
 #include "core/base/vectors.h"
 #include "lighting/lamps.h"
-#include "lighting/light_map.h"
 
 /* --- the six sides of the cube that a lamp sees, and the map of each --- */
 

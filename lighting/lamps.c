@@ -1,13 +1,11 @@
 #include "lighting/lamps.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "accumulation/disc_point.h"
 #include "accumulation/sequence.h"
 #include "core/base/options.h"
 #include "core/base/trigonometry.h"
-#include "core/base/vectors.h"
 #include "lighting/light_axes.h"
 
 static int are_lengths(const double *of, int n) {

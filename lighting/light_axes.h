@@ -2,8 +2,6 @@
 #ifndef CONIC_LIGHT_AXES_H
 #define CONIC_LIGHT_AXES_H
 
-#include <math.h>
-
 #include "core/base/vectors.h"
 
 /* Right, down and forward. Forward is opposite to the unit direction towards the light; right is at a right angle to

@@ -1,9 +1,7 @@
 #include "lighting/light_map.h"
 
-#include <math.h>
 #include <string.h>
 
-#include "core/base/vectors.h"
 #include "lighting/light_axes.h"
 
 /* The light's distance in units of the receivers' reach from their middle. Its rays then meet at 0.2°, less than the

@@ -2,9 +2,7 @@
 #ifndef CONIC_LIGHT_WORK_H
 #define CONIC_LIGHT_WORK_H
 
-#include "core/image/camera_rays.h"
 #include "lighting/lit_map.h"
-#include "lighting/receivers.h"
 #include "raster/tiles/finish.h"
 
 /* Turns what the points of a surface receive into what the pixels of a picture receive. */

@@ -1,16 +1,8 @@
 /* Takes from a drawn picture the light that does not arrive. */
-#include "conic/lighting.h"
-
-#include <string.h>
 
 #include "core/base/color.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
-#include "core/base/options.h"
-#include "core/base/threads.h"
 #include "core/image/image_common.h"
 #include "core/image/view_arguments.h"
-#include "lighting/light_sharing.h"
 #include "lighting/light_work.h"
 #include "raster/tiles/lights.h"
 

@@ -1,12 +1,10 @@
 #include "lighting/receivers.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "core/base/memory.h"
 #include "core/base/threads.h"
 #include "core/base/vectors.h"
-#include "core/image/camera_rays.h"
 
 /* The receivers in one row of a picture. */
 typedef struct receiver_row {

@@ -2,9 +2,6 @@
 #ifndef CONIC_RECEIVERS_H
 #define CONIC_RECEIVERS_H
 
-#include <stdint.h>
-
-#include "conic/camera.h"
 #include "conic/image.h"
 #include "conic/splats.h"
 #include "core/image/camera_rays.h"

@@ -1,12 +1,6 @@
 /* Directions of the sequence, spread evenly over the sphere or as a sky's picture is bright. */
-#include <math.h>
-#include <string.h>
-
-#include "conic/lighting.h"
 
 #include "accumulation/sequence.h"
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
 #include "core/image/framing.h"

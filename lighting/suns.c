@@ -1,12 +1,10 @@
 /* Suns: discs of light, with a direction. */
-#include <math.h>
 
 #include "accumulation/disc_point.h"
 #include "accumulation/sequence.h"
 #include "conic/lighting.h"
 #include "core/base/message.h"
 #include "core/base/trigonometry.h"
-#include "core/base/vectors.h"
 #include "lighting/light_axes.h"
 
 /* Turns the direction to a point of a cap of the sphere about it; equal areas of the disc become equal areas of the

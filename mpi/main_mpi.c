@@ -4,7 +4,6 @@
 #include "cli/command.h"
 #include "cli/session_team.h"
 #include "cli/shell.h"
-#include "core/base/base.h"
 #include "core/base/machine.h"
 #include "mpi/ranks.h"
 #include "mpi/timeline.h"

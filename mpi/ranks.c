@@ -4,9 +4,7 @@
 #include <pthread.h>
 #include <sched.h>
 #include <stdatomic.h>
-#include <time.h>
 
-#include "core/base/base.h"
 #include "mpi/outbox.h"
 
 /* Counts of MPI are ints: what is longer goes in pieces. */

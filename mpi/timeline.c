@@ -3,7 +3,6 @@
 #include <pthread.h>
 
 #include "cli/session.h"
-#include "core/base/base.h"
 #include "mpi/ranks.h"
 
 /* The events of this rank, as lines of JSON that end in a comma. */

@@ -3,7 +3,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "core/base/base.h"
 #include "core/image/image_common.h"
 
 /* What a file begins with. */

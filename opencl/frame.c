@@ -1,9 +1,7 @@
 #include "opencl/frame.h"
 
-#include "core/base/base.h"
 #include "core/image/image_common.h"
 #include "raster/project/clip_lines.h"
-#include "raster/project/projected.h"
 #include "raster/view/method.h"
 
 /* A tile's fragments are counted in 32 bits: no more splats than this are on a device at a time. */

@@ -1,9 +1,7 @@
 /* Set-up: the splats of a part to the device, their records, and these in order. */
-#include <string.h>
 
 #include "opencl/frame.h"
 #include "raster/project/clip_lines.h"
-#include "raster/project/projected.h"
 #include "raster/view/method.h"
 
 static void note_splats(const conic_frame *f, conic_splats_on_device *list) {

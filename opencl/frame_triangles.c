@@ -1,12 +1,10 @@
 /* Triangles: set up on the host by plain C, drawn on the device before the splats, and added to their sums after them.
  */
 
-#include "conic/triangles.h"
 #include "core/base/base.h"
 #include "core/image/texture_levels.h"
 #include "opencl/frame.h"
 #include "raster/loops/raster_loops.h"
-#include "raster/triangles/triangle_frame.h"
 
 _Static_assert(CONIC_DEVICE_TEXTURE_LEVELS == CONIC_TEXTURE_LEVELS, "a device's texture has all levels");
 

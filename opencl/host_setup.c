@@ -4,7 +4,6 @@
 #include "core/base/base.h"
 #include "opencl/frame.h"
 #include "raster/project/clip_lines.h"
-#include "raster/project/projected.h"
 
 typedef struct host_setup {
   const conic_frame *frame;

@@ -1,6 +1,5 @@
 #include "opencl/program.h"
 
-#include "core/base/base.h"
 #include "core/image/image_common.h"
 #include "opencl/cache.h"
 

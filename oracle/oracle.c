@@ -1,7 +1,5 @@
 /* The oracle: pixel by pixel, in double precision. What is asked, and room for the answer. */
-#include "conic/oracle.h"
 
-#include "core/base/base.h"
 #include "core/image/view_arguments.h"
 #include "core/splats/columns.h"
 #include "oracle/oracle_blocks.h"

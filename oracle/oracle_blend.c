@@ -1,8 +1,6 @@
 /* The planes of a covered pixel, from the fragments that are visible there. */
 #include "oracle/oracle_pixel.h"
 
-#include <string.h>
-
 static double difference(const double a[3], const double b[3]) {
   double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
   return oracle_length(d);

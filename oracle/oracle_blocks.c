@@ -2,7 +2,6 @@
 
 #include <stdatomic.h>
 
-#include "core/base/base.h"
 #include "oracle/oracle_weights.h"
 
 /* A block's edge in samples, and the splats that are set up at a time unless one pixel has more: what a thread needs

@@ -1,7 +1,5 @@
 #include "oracle/oracle_bounds.h"
 
-#include "core/base/base.h"
-
 /* More surfaces than this that may be the foremost are taken as one. */
 enum { MOST_SURFACES = 12 };
 

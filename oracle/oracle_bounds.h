@@ -2,7 +2,6 @@
 #ifndef CONIC_ORACLE_BOUNDS_H
 #define CONIC_ORACLE_BOUNDS_H
 
-#include "oracle/oracle_pixel.h"
 #include "oracle/oracle_triangle.h"
 
 /* A contribution, and its share: `least` is 0 where it may be missing. */

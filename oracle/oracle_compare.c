@@ -1,6 +1,5 @@
 /* An image held against the oracle's reference. */
 
-#include "core/base/base.h"
 #include "oracle/oracle_evidence.h"
 #include "oracle/oracle_pixel.h"
 

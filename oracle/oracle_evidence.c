@@ -1,7 +1,5 @@
 #include "oracle/oracle_evidence.h"
 
-#include "core/base/base.h"
-
 CONIC_DEFINE_NAMES(conic_pixel_class_name, conic_pixel_class, CONIC_N_PIXEL_CLASSES, "equal", "rounded", "explained",
                    "wrong")
 

@@ -1,7 +1,5 @@
 #include "oracle/oracle_splat.h"
 
-#include <string.h>
-
 void conic_oracle_exact(const oracle_view *view, const oracle_placed *s, oracle_exact *exact) {
   const conic_camera *c = &view->camera;
   const double matrix[3][3] = {

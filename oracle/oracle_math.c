@@ -1,7 +1,5 @@
 #include "oracle/oracle_math.h"
 
-#include "core/base/base.h"
-
 /* eˣ = 2ᵏ·eʳ with |r| ≤ ½ ln 2, and eʳ by its series. */
 double conic_oracle_exp(double x) {
   if (!(x > -700.0))

@@ -1,6 +1,5 @@
 /* The reference of a picture that is the mean of several: what each of them may be, averaged. */
 
-#include "core/base/base.h"
 #include "oracle/oracle_pixel.h"
 
 /* The planes whose means are means, and where their channels stand in an alternative. */

@@ -1,6 +1,5 @@
 /* Triangles on the oracle's screen: placed, clipped and snapped. */
 
-#include "core/base/base.h"
 #include "oracle/oracle_triangle.h"
 
 /* The guard band, in pixels. */

@@ -2,7 +2,6 @@
 #ifndef CONIC_ORACLE_PIXEL_H
 #define CONIC_ORACLE_PIXEL_H
 
-#include "conic/oracle.h"
 #include "oracle/oracle_scene.h"
 
 /* What a stable pixel may be off by: see docs/reference/oracle.md. */

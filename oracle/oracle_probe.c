@@ -1,6 +1,5 @@
 /* One splat alone: what its formula and the exact kernel give at chosen places. */
 
-#include "core/base/base.h"
 #include "core/image/view_arguments.h"
 #include "oracle/oracle_splat.h"
 

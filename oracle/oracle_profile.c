@@ -1,7 +1,5 @@
 #include "oracle/oracle_splat.h"
 
-#include "core/base/memory.h"
-
 enum { LEVELS = 18, RADII = 16, NODES = 5, PARTS = 40, KNOWN = 256, NORMALS = 225 };
 enum { STEPS = 16, PLACES = 9, TERMS = 16 };
 

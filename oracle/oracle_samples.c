@@ -1,5 +1,4 @@
 /* The oracle's pixel of N × N samples: docs/reference/picture.md, "Samples". */
-#include <string.h>
 
 #include "oracle/oracle_bounds.h"
 

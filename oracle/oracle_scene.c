@@ -1,8 +1,6 @@
 #include "oracle/oracle_scene.h"
 
-#include "core/base/base.h"
 #include "core/splats/clip.h"
-#include "oracle/oracle_splat.h"
 
 /* An axis is turned into camera space and sheared in single precision, so that each of its components may be off by a
  * rounding of the whole. */

@@ -2,8 +2,6 @@
 #ifndef CONIC_ORACLE_SCENE_H
 #define CONIC_ORACLE_SCENE_H
 
-#include "conic/oracle.h"
-#include "core/base/base.h"
 #include "oracle/oracle_splat.h"
 
 /* Clip lines, for the oracle: docs/reference/picture.md, Clip lines, from points of the line instead of from matrices.

@@ -2,7 +2,6 @@
 #ifndef CONIC_ORACLE_SPLAT_H
 #define CONIC_ORACLE_SPLAT_H
 
-#include "conic/context.h"
 #include "conic/oracle.h"
 #include "oracle/oracle_math.h"
 

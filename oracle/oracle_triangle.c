@@ -1,8 +1,6 @@
 /* A triangle at a pixel: docs/reference/picture.md, Triangles. */
 #include "oracle/oracle_triangle.h"
 
-#include <string.h>
-
 /* What a piece is at a sample. */
 typedef struct sample {
   double share[3]; /* of the corners, on the screen */

@@ -3,7 +3,6 @@
 #ifndef CONIC_ORACLE_TRIANGLE_H
 #define CONIC_ORACLE_TRIANGLE_H
 
-#include "conic/triangles.h"
 #include "oracle/oracle_pixel.h"
 
 /* A triangle, or a piece of one that is clipped, as it is drawn. */

@@ -1,7 +1,5 @@
 #include "oracle/oracle_weights.h"
 
-#include <string.h>
-
 static void count_error(oracle_histogram *h, double error) {
   uint64_t bits;
   double scaled = error * 0x1p-960; /* so that 2⁻⁶³ is the least that has a bin of its own */

@@ -3,7 +3,6 @@
 #define CONIC_ORACLE_WEIGHTS_H
 
 #include "oracle/oracle_pixel.h"
-#include "oracle/oracle_splat.h"
 
 /* Errors of weights by size: sixteen bins to the octave. */
 enum { ORACLE_N_BINS = 1024 };

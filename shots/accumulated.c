@@ -4,7 +4,6 @@
 #include "shots/backdrop.h"
 #include "shots/focus.h"
 #include "shots/samples_shared.h"
-#include "shots/stage.h"
 #include "shots/way.h"
 
 typedef struct accumulating {

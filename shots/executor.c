@@ -1,7 +1,5 @@
 #include "shots/executor.h"
 
-#include <string.h>
-
 static void share_alone(void *data, uint64_t n, conic_unit_taker *take, void *cookie) {
   conic_alone *alone = data;
   alone->next = 0;

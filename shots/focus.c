@@ -1,6 +1,5 @@
 #include "shots/focus.h"
 
-#include "core/base/base.h"
 #include "core/base/rank.h"
 #include "shots/way.h"
 #include "source/source_kind.h"

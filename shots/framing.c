@@ -1,7 +1,6 @@
 /* A camera that sees all of a source. */
 
 #include "conic/shot.h"
-#include "core/base/base.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
 #include "source/source_kind.h"

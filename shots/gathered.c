@@ -1,5 +1,4 @@
 /* Pictures of cameras that are no pinholes, from views by pinholes. */
-#include <string.h>
 
 #include "accumulation/sequence.h"
 #include "conic/gather.h"
@@ -7,7 +6,6 @@
 #include "raster/frame/statistics.h"
 #include "raster/tiles/lights.h"
 #include "shots/shot_reach.h"
-#include "shots/stage.h"
 
 typedef struct view_gathering {
   const conic_shot_stage *stage;

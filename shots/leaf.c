@@ -1,5 +1,4 @@
 /* The last stage: the source draws, alone or with other processes. */
-#include "shots/stage.h"
 #include "shots/windows.h"
 
 conic_status conic_stage_leaf(const conic_shot_stage *stage, const conic_look *look, conic_image *image,

@@ -1,11 +1,9 @@
 /* Light that does not arrive: takes it away from what was drawn, by maps that the leaf draws. */
-#include <string.h>
 
 #include "accumulation/sequence.h"
 #include "core/image/image_common.h"
 #include "lighting/light_sharing.h"
 #include "shots/shot_reach.h"
-#include "shots/stage.h"
 
 /* What draws the maps. */
 typedef struct map_drawer {

@@ -1,7 +1,4 @@
-#include "conic/shot.h"
-
 #include "conic/gaussian_judge.h"
-#include "core/base/base.h"
 #include "core/base/color.h"
 #include "shots/backdrop.h"
 #include "shots/stage.h"

@@ -1,6 +1,5 @@
 /* What two shots differ in. */
 
-#include "core/base/base.h"
 #include "shots/shot_text.h"
 
 /* Keeps a path and a value, each with a zero behind it. */

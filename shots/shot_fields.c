@@ -1,7 +1,5 @@
 #include "shots/shot_fields.h"
 
-#include "conic/coloring.h"
-#include "conic/patches.h"
 #include "core/base/base.h"
 #include "shots/shot_faults.h"
 

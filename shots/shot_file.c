@@ -1,7 +1,4 @@
-#include "conic/shot_file.h"
-
 #include "conic/version.h"
-#include "core/base/base.h"
 #include "core/files/file.h"
 #include "shots/shot_text.h"
 

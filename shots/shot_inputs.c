@@ -4,10 +4,6 @@
 #include <stdatomic.h>
 #include <unistd.h>
 
-#include "conic/layers.h"
-#include "conic/layers_draw.h"
-#include "core/base/base.h"
-#include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/guard.h"
 #include "shots/shot_key.h"

@@ -1,7 +1,6 @@
 #include "shots/shot_key.h"
 
 #include "conic/version.h"
-#include "core/base/base.h"
 #include "shots/shot_text.h"
 
 void conic_key_add_text(conic_sha256 *sum, const char *text) {

@@ -1,6 +1,5 @@
 #include "shots/shot_plan.h"
 
-#include "core/base/message.h"
 #include "shots/focus.h"
 #include "shots/shot_faults.h"
 #include "source/source_kind.h"

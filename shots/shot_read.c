@@ -1,6 +1,5 @@
 /* Shots from text: by the table of fields, and strictly. */
 
-#include "core/base/base.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/json_read.h"

@@ -1,6 +1,5 @@
 /* What the fields are, for others: one by one, and as a JSON schema. */
 
-#include "core/base/base.h"
 #include "shots/shot_text.h"
 
 /* --- one by one --- */

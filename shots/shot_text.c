@@ -2,7 +2,6 @@
 
 #include <stdarg.h>
 
-#include "core/base/base.h"
 #include "core/files/number.h"
 
 void conic_text_add(conic_text *text, const char *bytes, size_t n) {

@@ -2,7 +2,6 @@
 #ifndef CONIC_SHOT_TEXT_H
 #define CONIC_SHOT_TEXT_H
 
-#include "core/base/message.h"
 #include "core/files/sha256.h"
 #include "shots/shot_fields.h"
 

@@ -4,7 +4,6 @@
 #ifndef CONIC_STAGE_H
 #define CONIC_STAGE_H
 
-#include "conic/shot.h"
 #include "shots/executor.h"
 #include "shots/shot_plan.h"
 

@@ -1,6 +1,5 @@
 #include "shots/strip_list.h"
 
-#include "core/base/base.h"
 #include "source/source_kind.h"
 
 /* What lies across the border of two strips is read for both, so there are few: of a process's share, the first is one

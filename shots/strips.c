@@ -1,10 +1,8 @@
 #include "shots/strips.h"
 
-#include "core/base/base.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/image/image_common.h"
-#include "core/pictures/image_exr_bands.h"
 #include "shots/strips_writer.h"
 #include "shots/windows.h"
 #include "source/source_kind.h"

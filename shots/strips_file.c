@@ -1,7 +1,5 @@
 #include "shots/strips_file.h"
 
-#include "core/base/base.h"
-#include "core/files/disk.h"
 #include "core/files/guard.h"
 #include "core/image/image_common.h"
 #include "core/pictures/image_exr_bands.h"

@@ -10,8 +10,6 @@
 #ifndef CONIC_STRIPS_FILE_H
 #define CONIC_STRIPS_FILE_H
 
-#include "conic/image.h"
-#include "conic/render.h"
 #include "core/files/pile.h"
 #include "core/files/sha256.h"
 #include "source/source_parts.h"

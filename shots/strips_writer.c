@@ -1,6 +1,5 @@
 #include "shots/strips_writer.h"
 
-#include "core/base/base.h"
 #include "core/image/image_common.h"
 
 conic_status conic_strips_writer_open(conic_strips_writer *w, const conic_render_statistics *statistics,

@@ -1,6 +1,5 @@
 #include "shots/way.h"
 
-#include "core/base/message.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
 #include "source/source_kind.h"

@@ -1,9 +1,7 @@
 #include "shots/windows.h"
 
-#include "core/base/base.h"
 #include "core/image/image_common.h"
 #include "raster/frame/statistics.h"
-#include "source/source_parts.h"
 
 /* Windows a process: so many that those who are early have something to take, so few that the splats, which each
  * projects, are not most of the work. Where they are dealt out nobody takes more, and each has to get as much to do. */

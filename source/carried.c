@@ -1,6 +1,5 @@
 #include "source/carried.h"
 
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/image/image_common.h"
 #include "core/image/view_arguments.h"

@@ -1,10 +1,8 @@
 /* Windows of sources that choose before they draw: splats and triangles. */
 
-#include "core/base/base.h"
 #include "raster/frame/samples.h"
 #include "raster/transparency/transparent_windows.h"
 #include "source/source_kind.h"
-#include "source/source_parts.h"
 
 /* The band that is set up. */
 typedef struct choice_band {

@@ -1,6 +1,5 @@
 /* Splats and triangles in memory: from any number of files, or from a caller's arrays. */
 
-#include "core/base/base.h"
 #include "core/base/context_struct.h"
 #include "core/base/loan_find.h"
 #include "core/estimate/estimate.h"

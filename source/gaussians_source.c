@@ -1,7 +1,6 @@
 /* Gaussian scenes: they draw themselves, composited by alpha. */
 
 #include "conic/opencl.h"
-#include "core/base/base.h"
 #include "core/base/loan_find.h"
 #include "core/base/vectors.h"
 #include "core/image/image_common.h"

@@ -1,7 +1,5 @@
 /* Hybrid models: a .chy, or a model built from a mesh. */
 
-#include "conic/hybrid.h"
-#include "core/base/base.h"
 #include "source/mesh_input.h"
 #include "source/source_kind.h"
 

@@ -1,15 +1,9 @@
 /* Layered point clouds: a .lpc or its URL, which draws itself in bounded memory. */
 #include <inttypes.h>
-#include <string.h>
 
-#include "conic/hybrid.h"
-#include "conic/layers.h"
-#include "conic/layers_draw.h"
 #include "core/image/image_common.h"
-#include "lod/hierarchies/hierarchy.h"
 #include "lod/layers/draw/layers_gather.h"
 #include "lod/layers/draw/layers_picture.h"
-#include "lod/layers/format/layers_format.h"
 #include "raster/frame/samples.h"
 #include "source/source_kind.h"
 

@@ -1,7 +1,6 @@
 #include "source/mesh_input.h"
 
 #include "conic/gaussians.h"
-#include "core/base/base.h"
 #include "core/estimate/estimate.h"
 #include "core/formats/model_read.h"
 #include "core/splats/repairs_log.h"

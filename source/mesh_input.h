@@ -2,10 +2,7 @@
 #ifndef CONIC_MESH_INPUT_H
 #define CONIC_MESH_INPUT_H
 
-#include "conic/coloring.h"
 #include "conic/hybrid.h"
-#include "conic/model.h"
-#include "conic/triangles.h"
 
 /* Reads a mesh. On success the caller releases *triangles. Errors: as conic_triangles_read's; INPUT where nothing could
  * be drawn. */

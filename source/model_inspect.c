@@ -1,8 +1,5 @@
 /* The contents of a file of points, of a mesh or of Gaussians, and what of it cannot be drawn. */
 
-#include "conic/gaussians.h"
-#include "conic/model.h"
-#include "core/base/base.h"
 #include "core/formats/model_read.h"
 #include "core/splats/clip.h"
 #include "source/reach.h"

@@ -1,7 +1,5 @@
 /* Octrees: from a .cot, the nodes that the error or the budget asks for; without either, its leaves. */
 
-#include "conic/octree.h"
-#include "core/base/base.h"
 #include "core/base/context_struct.h"
 #include "core/base/trigonometry.h"
 #include "source/source_kind.h"

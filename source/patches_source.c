@@ -1,7 +1,5 @@
 /* Points drawn as part of a smooth surface, by samples of the polynomials about them. */
-#include "conic/patches.h"
 
-#include "core/base/clock.h"
 #include "source/source_kind.h"
 
 /* ε of a mesh's patches, in their distances from the vertices next to their own; and the most, in points' ε. */

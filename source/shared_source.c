@@ -1,11 +1,8 @@
 #include "source/shared_source.h"
 
-#include "conic/gaussians.h"
-#include "core/base/base.h"
 #include "core/estimate/estimate.h"
 #include "core/formats/model_part.h"
 #include "core/image/image_common.h"
-#include "core/splats/columns.h"
 #include "core/splats/near.h"
 #include "core/splats/repairs_log.h"
 #include "raster/frame/samples.h"

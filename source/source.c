@@ -1,13 +1,9 @@
 /* What all sources share: which kind takes which input, the box and the camera, and the steps around a kind's own
  * functions. */
-#include "conic/source.h"
 
-#include "conic/gaussians.h"
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "source/carried.h"
 #include "source/reach.h"
-#include "source/source_kind.h"
 
 /* Every kind, in the order in which they are asked; the last takes all remaining inputs. */
 static const conic_source_kind *const kinds[] = {&conic_source_kind_gaussians, &conic_source_kind_layers,

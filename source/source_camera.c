@@ -1,9 +1,6 @@
 /* Cameras for a source: one that its outline just fits; and which way is up. */
-#include <string.h>
 
-#include "conic/source.h"
 #include "raster/view/drawing_frame.h"
-#include "source/source_kind.h"
 #include "source/source_samples.h"
 #include "source/upright.h"
 

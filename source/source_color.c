@@ -1,6 +1,5 @@
 /* Colours of a source, made from what its points hold. */
 
-#include "core/base/base.h"
 #include "source/source_kind.h"
 #include "source/upright.h"
 

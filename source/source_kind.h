@@ -2,7 +2,6 @@
 #ifndef CONIC_SOURCE_KIND_H
 #define CONIC_SOURCE_KIND_H
 
-#include "conic/source.h"
 #include "core/pictures/georeference.h"
 #include "core/splats/shares.h"
 #include "source/facts.h"

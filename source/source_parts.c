@@ -1,6 +1,5 @@
 #include "source/source_parts.h"
 
-#include "core/base/base.h"
 #include "source/source_kind.h"
 
 int conic_source_has_windows(const conic_source *source, const conic_renderer *renderer, int is_transparent) {

@@ -2,7 +2,6 @@
  * Coarse parts are enough for them, so little is read. */
 #include "source/source_samples.h"
 
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 
 enum { SIDE = 96, N_VIEWS = 6 };

@@ -2,7 +2,6 @@
 #ifndef CONIC_SOURCE_SAMPLES_H
 #define CONIC_SOURCE_SAMPLES_H
 
-#include "core/base/team.h"
 #include "source/source_kind.h"
 
 /* Takes discs of what is seen of the source from six sides. On success the caller releases them. Errors: as

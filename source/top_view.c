@@ -1,10 +1,7 @@
 #include "source/top_view.h"
 
-#include "conic/triangles.h"
-#include "core/base/base.h"
 #include "core/splats/columns.h"
 #include "raster/frame/statistics.h"
-#include "raster/view/part.h"
 #include "source/source_kind.h"
 #include "source/top_lift.h"
 

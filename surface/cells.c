@@ -1,7 +1,5 @@
 #include "surface/cells.h"
 
-#include "core/base/base.h"
-
 enum { FIRST_ROOM = 256 };
 
 conic_status conic_cells_begin(conic_context *context, double side, conic_cells *cells) {

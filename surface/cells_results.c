@@ -1,7 +1,5 @@
 #include "surface/cells_results.h"
 
-#include "core/base/base.h"
-
 /* Results sent at a time. */
 enum { SENT_RESULTS = 1 << 16 };
 

@@ -3,7 +3,6 @@
 #ifndef CONIC_CELLS_RESULTS_H
 #define CONIC_CELLS_RESULTS_H
 
-#include "core/base/base.h"
 #include "core/base/team.h"
 #include "core/files/scratch.h"
 

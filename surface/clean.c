@@ -1,6 +1,5 @@
 /* Projects a surface's own points, leaf by leaf of the tree: a leaf's points share their candidates. */
 
-#include "core/base/base.h"
 #include "core/base/team_runs.h"
 #include "core/splats/splats_gather.h"
 #include "surface/own_points.h"

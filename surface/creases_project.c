@@ -2,7 +2,6 @@
  * where another piece cuts it off; beyond, the point is on the edge between them, or on the corner of three. The
  * nearest of these points is the result. */
 
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "surface/least_spread.h"
 #include "surface/loops/weight.h"

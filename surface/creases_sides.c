@@ -1,7 +1,6 @@
 /* Which side of a crease each sample is on. A plane through all neighbours of a sample near a crease is blunt. So such
  * a sample takes over the flattest nearby plane in which it lies: that of a neighbour farther inside. */
 
-#include "core/base/base.h"
 #include "core/base/team_runs.h"
 #include "core/base/vectors.h"
 #include "surface/least_spread.h"

@@ -3,7 +3,6 @@
  * or below either. The planes of these discs are also the lines at which a splat is clipped. */
 #include "conic/csg.h"
 
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/estimate/neighbours.h"
 #include "core/splats/clip.h"

@@ -1,6 +1,5 @@
 #include "surface/darts.h"
 
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 
 enum { N_COVERS = 32 };

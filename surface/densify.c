@@ -5,12 +5,10 @@
  * In passes with ever smaller radii, a dart is thrown at every place of the triangles without a point nearby, and the
  * darts are projected. */
 
-#include "core/base/base.h"
 #include "core/base/team_runs.h"
 #include "core/base/vectors.h"
 #include "core/splats/builder.h"
 #include "core/splats/splats_gather.h"
-#include "surface/darts.h"
 #include "surface/densify_triangles.h"
 
 /* --- landings --- */

@@ -1,6 +1,5 @@
 #include "surface/densify_triangles.h"
 
-#include "core/base/base.h"
 #include "core/base/team_runs.h"
 #include "core/base/vectors.h"
 #include "surface/fan.h"

@@ -1,6 +1,5 @@
 /* How far one surface is from another, measured at its points. */
 
-#include "core/base/base.h"
 #include "core/base/team_runs.h"
 #include "surface/own_points.h"
 

@@ -1,6 +1,5 @@
 #include "surface/fan.h"
 
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/estimate/voronoi_cell.h"
 

@@ -1,5 +1,4 @@
 /* The polynomial over the local plane (PSS Eq. 3), by orthogonal columns instead of normal equations. */
-#include <string.h>
 
 #include "surface/mls_surface.h"
 

@@ -1,6 +1,5 @@
 /* The samples near a point: from the tree into the arrays that the loops sum over. */
 
-#include "core/base/base.h"
 #include "core/base/team_runs.h"
 #include "core/base/vectors.h"
 #include "surface/mls_surface.h"

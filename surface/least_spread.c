@@ -1,7 +1,5 @@
 #include "surface/least_spread.h"
 
-#include <math.h>
-
 #include "core/base/eigen.h"
 #include "core/base/vectors.h"
 

@@ -1,6 +1,5 @@
 #include "surface/mls_surface.h"
 
-#include "core/base/base.h"
 #include "core/base/rank.h"
 #include "core/base/team_runs.h"
 #include "core/base/vectors.h"

@@ -2,7 +2,6 @@
 #ifndef CONIC_MLS_SURFACE_H
 #define CONIC_MLS_SURFACE_H
 
-#include "conic/surface.h"
 #include "core/estimate/neighbours.h"
 #include "surface/loops/surface_loops.h"
 

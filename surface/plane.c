@@ -8,7 +8,6 @@
  * Newton steps in all three unknowns reach the last digits in a few sums. Where they cannot be trusted, the paper's two
  * steps alternate: a safeguarded search along n by Eq. 6 (corrected), then a new normal by the covariance about q. */
 
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "surface/least_spread.h"
 #include "surface/mls_surface.h"

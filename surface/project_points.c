@@ -1,4 +1,3 @@
-#include "core/base/base.h"
 #include "surface/mls_surface.h"
 
 enum { CHUNK = 256, CHUNKS_A_REPORT = 64 };

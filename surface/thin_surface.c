@@ -4,7 +4,6 @@
  * to the front of the queue, so that none is removed on an old measure. A point's distance from the surface of the
  * others mostly grows when these become fewer, so hardly any comes to the front too late. */
 
-#include "core/base/base.h"
 #include "core/base/heap.h"
 #include "core/base/team_runs.h"
 #include "core/splats/splats_gather.h"

@@ -3,9 +3,6 @@
 #ifndef CONIC_CROSS_H
 #define CONIC_CROSS_H
 
-#include <stdint.h>
-#include <time.h>
-
 #include "bench/loops/cross_all.h"
 #include "lod/octree/octree_loops.h"
 #include "raster/loops/raster_loops.h"

@@ -1,6 +1,5 @@
 #include "cli/commands/build_coloring.h"
 
-#include "core/base/base.h"
 #include "core/coloring/coloring_stream.h"
 
 void cli_coloring_init(cli_coloring *coloring) {

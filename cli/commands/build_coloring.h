@@ -6,7 +6,6 @@
 #include "cli/commands/build_steps.h"
 #include "cli/points/points_share.h"
 #include "cli/scene/scene_options.h"
-#include "conic/coloring.h"
 
 typedef struct cli_coloring {
   conic_coloring_options options; /* `by` null: colours stay as they are */

@@ -2,7 +2,6 @@
 
 #include "cli/outputs.h"
 #include "cli/points/points_input.h"
-#include "core/base/base.h"
 #include "core/base/team_runs.h"
 #include "source/reach.h"
 

@@ -2,8 +2,6 @@
 #ifndef CONIC_BUILD_STEPS_H
 #define CONIC_BUILD_STEPS_H
 
-#include "cli/arguments.h"
-#include "cli/json_write.h"
 #include "cli/option_check.h"
 #include "cli/team_report.h"
 #include "cli/tell.h"

@@ -3,8 +3,6 @@
 #include "cli/command.h"
 #include "cli/commands/build_steps.h"
 #include "cli/outputs.h"
-#include "conic/source.h"
-#include "core/base/base.h"
 #include "core/files/disk.h"
 
 typedef struct convert_job {

@@ -2,8 +2,6 @@
 #include "cli/command.h"
 #include "cli/commands/build_steps.h"
 #include "cli/points/points_input.h"
-#include "conic/csg.h"
-#include "core/base/message.h"
 #include "core/splats/repairs_log.h"
 
 static const char *const operation_names[] = {"union", "intersection", "difference", NULL};

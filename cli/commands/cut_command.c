@@ -3,8 +3,6 @@
 #include "cli/command.h"
 #include "cli/commands/build_steps.h"
 #include "cli/cut_region.h"
-#include "conic/layers_draw.h"
-#include "core/base/base.h"
 #include "core/files/file.h"
 #include "core/formats/las_write.h"
 

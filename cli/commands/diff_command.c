@@ -5,7 +5,6 @@
 #include "cli/commands/diff_job.h"
 #include "cli/commands/diff_shots.h"
 #include "cli/outputs.h"
-#include "core/base/base.h"
 
 static void write_planes(cli_json *json, const conic_difference *difference) {
   cli_json_object(json, "planes");

@@ -1,7 +1,6 @@
 /* conic diff of two folders: a table of views and means, as papers have it. */
 
 #include "cli/commands/diff_views.h"
-#include "core/base/base.h"
 #include "core/files/file.h"
 
 static const char *const match_names[] = {"", "name", "number", "order"};

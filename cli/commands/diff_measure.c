@@ -1,7 +1,6 @@
 /* Measures two files for conic diff, and reports the result. */
 
 #include "cli/commands/diff_job.h"
-#include "core/base/base.h"
 #include "core/files/file.h"
 #include "core/image/compare.h"
 

@@ -1,6 +1,5 @@
 #include "cli/commands/diff_shots.h"
 
-#include "core/base/memory.h"
 #include "core/pictures/picture_shot.h"
 
 static conic_status read_picture_shot(const cli_session *session, const char *path, conic_shot_file **shot) {

@@ -4,7 +4,6 @@
 
 #include "cli/json_write.h"
 #include "cli/session.h"
-#include "conic/shot_file.h"
 
 typedef struct cli_diff_shots {
   conic_shot_file *shots[2]; /* both null: at least one says nothing */

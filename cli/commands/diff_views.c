@@ -1,8 +1,6 @@
 #include "cli/commands/diff_views.h"
 
 #include "cli/shell.h"
-#include "core/base/base.h"
-#include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/guard.h"
 

@@ -1,12 +1,9 @@
 /* conic explain: tells why a pixel is as it is, and where a splat is on the screen. */
 
-#include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/commands/gaussian_commands.h"
-#include "cli/json_write.h"
 #include "cli/outputs.h"
 #include "cli/render/sample_options.h"
-#include "core/base/base.h"
 #include "core/files/file.h"
 
 typedef struct explain_job {

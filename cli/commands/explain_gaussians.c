@@ -2,7 +2,6 @@
  * way. */
 #include "cli/commands/gaussian_commands.h"
 #include "cli/render/sample_options.h"
-#include "conic/source.h"
 
 /* A number alone, or an array of several. */
 static void write_list(cli_json *json, const char *key, const double *values, int n) {

@@ -2,9 +2,7 @@
 #ifndef CONIC_GAUSSIAN_COMMANDS_H
 #define CONIC_GAUSSIAN_COMMANDS_H
 
-#include "cli/json_write.h"
 #include "cli/scene/render_job.h"
-#include "conic/gaussian_judge.h"
 
 /* The planes of such scenes that can be judged and explained. */
 #define CLI_COMPOSITED_PLANES                                                                                          \

@@ -1,13 +1,8 @@
 /* conic gradient: the derivative of a Gaussian scene's picture by all numbers of the scene and the camera. */
 
-#include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/commands/gaussian_commands.h"
-#include "cli/json_write.h"
 #include "cli/outputs.h"
-#include "conic/gaussian_gradient.h"
-#include "conic/source.h"
-#include "core/base/base.h"
 
 typedef struct gradient_job {
   cli_render_job scene;

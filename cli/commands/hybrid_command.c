@@ -1,9 +1,6 @@
 /* conic hybrid: turns a mesh into clusters of triangles and of surfels. */
-#include "cli/command.h"
 #include "cli/commands/build_coloring.h"
-#include "cli/commands/build_steps.h"
 #include "core/base/context_struct.h"
-#include "core/base/message.h"
 #include "source/mesh_input.h"
 #include "source/reach.h"
 

@@ -6,7 +6,6 @@
 #include "cli/outputs.h"
 #include "cli/scene/views.h"
 #include "cli/source_facts.h"
-#include "core/base/base.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 

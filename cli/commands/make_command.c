@@ -4,7 +4,6 @@
 #include "cli/command.h"
 #include "cli/commands/build_steps.h"
 #include "cli/outputs.h"
-#include "core/base/base.h"
 #include "core/base/nearest_word.h"
 #include "gaussians/scene/made_gaussians.h"
 

@@ -4,7 +4,6 @@
 #include "cli/commands/build_steps.h"
 #include "cli/commands/mls_sizes.h"
 #include "cli/device_option.h"
-#include "core/base/base.h"
 #include "core/splats/point_values.h"
 #include "core/splats/repairs_log.h"
 

@@ -1,6 +1,5 @@
 #include "cli/commands/mls_sizes.h"
 
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/estimate/features.h"
 #include "core/estimate/neighbours.h"

@@ -2,10 +2,8 @@
  * that the chosen points cover what all points did, and end where those do. */
 
 #include "cli/commands/mls_sizes.h"
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/estimate/estimate.h"
-#include "core/estimate/neighbours.h"
 #include "core/splats/ellipse.h"
 #include "core/splats/splats_gather.h"
 

@@ -1,9 +1,6 @@
 /* conic octree: makes a point-octree from splats, raw points or a mesh. */
 
-#include "cli/command.h"
 #include "cli/commands/build_coloring.h"
-#include "cli/commands/build_steps.h"
-#include "core/base/base.h"
 #include "core/splats/repairs_log.h"
 #include "source/reach.h"
 

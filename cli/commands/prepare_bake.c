@@ -1,6 +1,5 @@
 #include "cli/commands/prepare_bake.h"
 
-#include "core/base/base.h"
 #include "core/splats/point_values.h"
 
 int cli_bake_parse(const char *text, void *value) {

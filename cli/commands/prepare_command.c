@@ -1,11 +1,8 @@
 /* conic prepare: makes splats from raw points or a mesh. */
 
-#include "cli/command.h"
 #include "cli/commands/build_coloring.h"
-#include "cli/commands/build_steps.h"
 #include "cli/commands/prepare_bake.h"
 #include "cli/points/points_input.h"
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/splats/repairs_log.h"
 

@@ -1,13 +1,10 @@
 /* conic verify: how far a picture is from the oracle's reference. */
 
-#include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/commands/gaussian_commands.h"
 #include "cli/commands/verify_reference.h"
-#include "cli/json_write.h"
 #include "cli/outputs.h"
 #include "cli/render/sample_options.h"
-#include "core/base/base.h"
 
 typedef struct verify_job {
   cli_render_job scene;

@@ -1,10 +1,8 @@
 /* conic verify for a Gaussian scene: compares a picture with the bounds of what floats may make of its profile. */
-#include <string.h>
 
 #include "cli/commands/gaussian_commands.h"
 #include "cli/commands/verify_reference.h"
 #include "cli/render/sample_options.h"
-#include "conic/source.h"
 
 typedef struct gaussian_report {
   const cli_render_job *scene;

@@ -1,6 +1,3 @@
-
-#include <string.h>
-
 #include "cli/commands/verify_reference.h"
 #include "cli/render/fill_shot.h"
 #include "cli/render/sample_options.h"

@@ -2,9 +2,7 @@
 #ifndef CONIC_VERIFY_REFERENCE_H
 #define CONIC_VERIFY_REFERENCE_H
 
-#include "cli/json_write.h"
 #include "cli/scene/render_job.h"
-#include "conic/oracle.h"
 
 /* The reference of the choice for this camera. With `is_from_file`, ids are the names of the choice, as a picture from
  * a file has them. On success the caller owns *reference. */

@@ -1,5 +1,4 @@
 /* Completion for bash: a function that knows each command's options and what their values are. */
-#include <string.h>
 
 #include "cli/help/help.h"
 

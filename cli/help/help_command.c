@@ -1,5 +1,4 @@
 /* conic help: of the program and of each command, in every format. */
-#include <string.h>
 
 #include "cli/help/help.h"
 #include "cli/json_write.h"

@@ -1,7 +1,6 @@
 /* The rows of a command's table as the pages show them. */
 
 #include "cli/help/help.h"
-#include "core/base/base.h"
 
 /* What an option's value is, by what the help calls it. */
 static cli_value_kind kind_of_value(const cli_option *option) {

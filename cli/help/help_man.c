@@ -1,6 +1,5 @@
 /* Manual pages. */
 #include <ctype.h>
-#include <string.h>
 
 #include "cli/help/help.h"
 

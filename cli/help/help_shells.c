@@ -1,5 +1,4 @@
 /* Completion for zsh and for fish, which show what each option means, too. */
-#include <string.h>
 
 #include "cli/help/help.h"
 

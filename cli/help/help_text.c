@@ -1,5 +1,4 @@
 /* The help on a terminal. */
-#include <string.h>
 
 #include "cli/help/help.h"
 

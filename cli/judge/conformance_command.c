@@ -6,8 +6,6 @@
 #include "cli/judge/suite_files.h"
 #include "cli/judge/suite_planes.h"
 #include "cli/outputs.h"
-#include "conic/version.h"
-#include "core/base/base.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 

@@ -7,7 +7,6 @@
 #include "cli/judge/judge_job.h"
 #include "cli/judge/suite_judge.h"
 #include "cli/outputs.h"
-#include "core/base/base.h"
 
 static unsigned judged_planes(const cli_judge_job *job) {
   unsigned planes = cli_is_composited(&job->scene) ? CLI_COMPOSITED_PLANES : CONIC_DRAWN_PLANES;

@@ -2,8 +2,6 @@
 
 #include "cli/commands/gaussian_commands.h"
 #include "cli/judge/judge_job.h"
-#include "conic/contributions.h"
-#include "conic/source.h"
 
 /* Keeps the heaviest. */
 static void keep_part(cli_judge_worst *w, const cli_judge_part *part) {

@@ -1,11 +1,7 @@
 #include "cli/judge/judge_gradients.h"
 
 #include "cli/commands/gaussian_commands.h"
-#include "cli/json_write.h"
 #include "cli/outputs.h"
-#include "conic/gaussian_gradient.h"
-#include "conic/source.h"
-#include "core/base/base.h"
 
 typedef struct gradients_job {
   cli_render_job scene;

@@ -3,8 +3,6 @@
 #define CONIC_JUDGE_JOB_H
 
 #include "cli/scene/render_job.h"
-#include "conic/diagnosis.h"
-#include "conic/picture.h"
 
 enum { CLI_JUDGE_MOST_REASONS = CONIC_MAX_UNSTABLE_REASONS, CLI_JUDGE_MOST_PARTS = 4, CLI_JUDGE_MOST_FAULTS = 8 };
 

@@ -1,5 +1,4 @@
 /* The class of every pixel in false colours, with a legend below. */
-#include <string.h>
 
 #include "cli/commands/gaussian_commands.h"
 #include "cli/judge/judge_job.h"

@@ -1,6 +1,5 @@
 #include "cli/judge/judge_page.h"
 
-#include "core/base/message.h"
 #include "core/files/disk.h"
 #include "core/pictures/image_png.h"
 

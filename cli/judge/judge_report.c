@@ -3,9 +3,6 @@
 #include "cli/commands/gaussian_commands.h"
 #include "cli/judge/judge_job.h"
 #include "cli/judge/judge_page.h"
-#include "conic/source.h"
-#include "conic/version.h"
-#include "core/base/base.h"
 #include "core/files/file.h"
 
 enum { PICTURE_PX = 460, CROP = 17, CROP_ZOOM = 12 };

@@ -1,11 +1,9 @@
 /* The two kinds of scenes that pictures are judged by, with their findings in one form; and the fault that would
  * explain the wrong pixels. */
-#include <string.h>
 
 #include "cli/commands/gaussian_commands.h"
 #include "cli/commands/verify_reference.h"
 #include "cli/judge/judge_job.h"
-#include "conic/source.h"
 
 static void take_worst(const conic_oracle_fault *faults, int n, cli_judgement *found) {
   found->n_worst = n;

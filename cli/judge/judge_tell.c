@@ -1,5 +1,4 @@
 /* The verdict, in words and as JSON. */
-#include <string.h>
 
 #include "cli/commands/gaussian_commands.h"
 #include "cli/commands/verify_reference.h"

@@ -1,12 +1,9 @@
 /* conic judge --suite: judges the pictures of a whole suite. */
 
 #include "cli/arguments.h"
-#include "cli/json_write.h"
 #include "cli/judge/suite_files.h"
 #include "cli/judge/suite_judge.h"
-#include "cli/judge/suite_scenes.h"
 #include "cli/outputs.h"
-#include "core/base/base.h"
 #include "core/files/disk.h"
 
 static int is_chosen_case(const suite_run *run, const suite_entry *entry) {

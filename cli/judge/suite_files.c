@@ -1,6 +1,5 @@
 #include "cli/judge/suite_files.h"
 
-#include "core/base/base.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/zip.h"

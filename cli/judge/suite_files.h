@@ -3,7 +3,6 @@
 #define CONIC_SUITE_FILES_H
 
 #include "cli/judge/suite_scenes.h"
-#include "conic/model.h"
 #include "core/files/sha256.h"
 
 extern const char cli_suite_readme[]; /* its README.md */

@@ -5,8 +5,6 @@
 #include "cli/json_write.h"
 #include "cli/judge/suite_manifest.h"
 #include "cli/session.h"
-#include "conic/gaussian_judge.h"
-#include "conic/picture.h"
 
 typedef enum suite_outcome { SUITE_IS_RIGHT, SUITE_IS_WRONG, SUITE_IS_MISSING, SUITE_OUTCOMES } suite_outcome;
 

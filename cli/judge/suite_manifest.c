@@ -1,7 +1,5 @@
 #include "cli/judge/suite_manifest.h"
 
-#include "core/base/base.h"
-
 enum { SUITE_MOST_LEVELS = 99, SUITE_MOST_ENTRIES = 4096 };
 
 /* A scene or a file of the manifest. */

@@ -1,6 +1,5 @@
 #include "cli/judge/suite_planes.h"
 
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/files/file.h"
 #include "core/files/numpy_array.h"

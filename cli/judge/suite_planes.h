@@ -5,7 +5,6 @@
 #define CONIC_SUITE_PLANES_H
 
 #include "conic/gaussian_judge.h"
-#include "conic/oracle.h"
 
 /* R, G, B over the background, A = 1 − T, Z. */
 enum { SUITE_CHANNELS = 5 };

@@ -1,5 +1,4 @@
 /* The option --profile NAME[,NAME] of commands for suites. */
-#include <string.h>
 
 #include "cli/judge/suite_scenes.h"
 #include "cli/session.h"

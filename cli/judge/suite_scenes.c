@@ -1,7 +1,6 @@
 /* The suite's scenes, and the table of them. */
 #include "cli/judge/suite_scenes.h"
 
-#include "core/base/base.h"
 #include "core/base/color.h"
 #include "core/base/random.h"
 #include "gaussians/scene/gaussian_set.h"

@@ -3,7 +3,6 @@
 #define CONIC_SUITE_SCENES_H
 
 #include "conic/gaussian_render.h"
-#include "conic/splats.h"
 
 enum { SUITE_LEVELS = 6 };
 

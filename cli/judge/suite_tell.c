@@ -1,8 +1,6 @@
 /* The result of a suite: a table for people, JSON for scripts, JUnit's XML for CI systems. */
-#include <string.h>
 
 #include "cli/commands/gaussian_commands.h"
-#include "cli/json_write.h"
 #include "cli/judge/suite_judge.h"
 #include "cli/judge/suite_planes.h"
 #include "cli/judge/suite_scenes.h"

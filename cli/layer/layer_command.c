@@ -1,8 +1,6 @@
 /* conic layer: makes a layered point cloud from any number of samples. */
 
-#include "cli/command.h"
 #include "cli/layer/layer_job.h"
-#include "core/base/base.h"
 #include "lod/layers/build/layers_team.h"
 
 static const char *const payload_words[] = {"plain", "full", NULL};

@@ -1,6 +1,4 @@
 #include "cli/layer/layer_job.h"
-#include "conic/layers_draw.h"
-#include "core/base/base.h"
 
 conic_status cli_layer_open_input(cli_layer_job *job, const char *path, conic_layers **layers) {
   conic_layers_access access;

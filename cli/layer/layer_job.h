@@ -3,11 +3,6 @@
 #define CONIC_LAYER_JOB_H
 
 #include "cli/commands/build_coloring.h"
-#include "cli/commands/build_steps.h"
-#include "cli/points/points_share.h"
-#include "cli/team_report.h"
-#include "conic/layers.h"
-#include "core/files/sha256.h"
 
 typedef struct cli_layer_job {
   cli_build base; /* its input is the current one … */

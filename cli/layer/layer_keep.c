@@ -1,9 +1,6 @@
 #include "cli/layer/layer_job.h"
-#include "conic/version.h"
-#include "core/base/base.h"
 #include "core/estimate/estimate.h"
 #include "lod/layers/build/layers_team.h"
-#include "shots/shot_inputs.h"
 #include "shots/shot_key.h"
 
 int cli_layer_check_keeping(const cli_layer_job *job) {

@@ -1,7 +1,5 @@
 #include "cli/layer/layer_job.h"
 #include "cli/points/points_input.h"
-#include "conic/layers_draw.h"
-#include "core/base/base.h"
 #include "core/files/disk.h"
 #include "core/splats/repairs_log.h"
 #include "lod/layers/build/layers_team.h"

@@ -1,5 +1,4 @@
 #include "cli/points/points_input.h"
-#include "core/base/base.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 

@@ -1,7 +1,6 @@
 #include "cli/points/points_input.h"
 
 #include "conic/layers_draw.h"
-#include "core/base/base.h"
 #include "core/files/file.h"
 #include "core/formats/model_read.h"
 

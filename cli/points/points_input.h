@@ -3,7 +3,6 @@
 #define CONIC_POINTS_INPUT_H
 
 #include "conic/gaussians.h"
-#include "conic/model.h"
 #include "core/base/base.h"
 
 /* Whether it is read as another kind's hierarchy, which gives only places and colours. */

@@ -1,7 +1,6 @@
 #include "cli/points/points_share.h"
 
 #include "cli/points/points_input.h"
-#include "core/base/base.h"
 #include "core/files/disk.h"
 
 /* A cut nearer to an end of an input than this part of a share is moved to that end. */

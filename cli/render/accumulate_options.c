@@ -1,8 +1,5 @@
-#include "cli/scene/accumulate_job.h"
-
 #include "cli/outputs.h"
 #include "cli/scene/render_job.h"
-#include "core/base/base.h"
 
 int cli_parse_focus(const char *text, void *value) {
   cli_focus *focus = value;

@@ -1,13 +1,9 @@
-#include "cli/scene/accumulate_job.h"
-
 #include "cli/render/frame_files.h"
 #include "cli/render/frames.h"
 #include "cli/render/shot_record.h"
 #include "cli/render/units.h"
 #include "cli/stopper.h"
-#include "core/base/base.h"
 #include "core/files/disk.h"
-#include "shots/stage.h"
 
 /* A width that was meant in other units shows nothing but blur. */
 static void tell_wide_lens(const cli_session *session, const cli_render_job *job) {

@@ -1,7 +1,5 @@
 #include "cli/render/fill_shot.h"
 
-#include <string.h>
-
 #include "cli/render/shot_again.h"
 #include "cli/scene/stereo.h"
 #include "shots/stage.h"

@@ -3,8 +3,6 @@
 #include "cli/outputs.h"
 #include "cli/render/frames.h"
 #include "cli/scene/background_options.h"
-#include "cli/session_team.h"
-#include "core/base/base.h"
 #include "core/coloring/color_ramp.h"
 #include "core/coloring/legend.h"
 #include "core/files/disk.h"

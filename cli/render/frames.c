@@ -3,7 +3,6 @@
 #include "cli/outputs.h"
 #include "cli/scene/stereo.h"
 #include "cli/scene/views.h"
-#include "core/base/base.h"
 #include "core/files/file.h"
 
 enum { MOST_FRAMES = 9999, MOST_VIEWS = 9999999 };

@@ -6,7 +6,6 @@
 #include "cli/render/shot_record.h"
 #include "cli/render/strip_pictures.h"
 #include "cli/render/units.h"
-#include "core/base/base.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/finished.h"

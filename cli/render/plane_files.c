@@ -3,7 +3,6 @@
 #include <strings.h>
 
 #include "cli/scene/render_job.h"
-#include "core/base/base.h"
 #include "core/base/color.h"
 #include "core/files/file.h"
 

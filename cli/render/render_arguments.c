@@ -1,6 +1,3 @@
-#include <string.h>
-
-#include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/render/fill_shot.h"
 #include "cli/render/kept_frames.h"

@@ -11,9 +11,6 @@
 #include "cli/render/strip_pictures.h"
 #include "cli/render/units.h"
 #include "cli/scene/stereo.h"
-#include "cli/session_team.h"
-#include "core/base/base.h"
-#include "shots/shot_plan.h"
 
 static int compare_frames(const void *a, const void *b) {
   const conic_render_statistics *first = a, *second = b;

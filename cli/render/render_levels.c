@@ -2,9 +2,7 @@
 
 #include "cli/render/shot_record.h"
 #include "cli/render/units.h"
-#include "core/base/base.h"
 #include "core/files/disk.h"
-#include "shots/stage.h"
 
 /* The deadline counts from the start of the program's work, not of this picture. */
 double cli_seconds_left(const cli_render_job *job) {

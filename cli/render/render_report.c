@@ -9,7 +9,6 @@
 #include "cli/scene/views.h"
 #include "cli/source_facts.h"
 #include "cli/tell.h"
-#include "core/base/base.h"
 
 enum { N_STAGES = 8, N_FRAME_STAGES = 6 };
 

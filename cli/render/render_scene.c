@@ -1,7 +1,6 @@
 /* A scene as the commands that draw one take it: opened, measured, framed. */
 
 #include "cli/host_keeps.h"
-#include "cli/opening_key.h"
 #include "cli/render/frames.h"
 #include "cli/render/shot_again.h"
 #include "cli/render/units.h"
@@ -9,7 +8,6 @@
 #include "cli/scene/scene_options.h"
 #include "cli/scene/stereo.h"
 #include "cli/scene/views.h"
-#include "core/base/base.h"
 #include "core/files/file.h"
 #include "core/files/guard.h"
 #include "shots/way.h"

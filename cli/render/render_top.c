@@ -1,7 +1,5 @@
 #include "cli/render/shot_record.h"
-#include "cli/scene/render_job.h"
 #include "cli/top/top_tiff.h"
-#include "core/base/base.h"
 #include "core/files/file.h"
 #include "core/image/image_common.h"
 

@@ -2,8 +2,6 @@
 
 #include "cli/render/shot_record.h"
 #include "cli/scene/scene_options.h"
-#include "conic/layers_draw.h"
-#include "core/base/base.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 

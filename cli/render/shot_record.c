@@ -2,8 +2,6 @@
 
 #include "cli/render/frames.h"
 #include "cli/scene/background_options.h"
-#include "conic/version.h"
-#include "core/base/base.h"
 #include "shots/shot_key.h"
 
 void cli_shot_settle(const cli_render_job *job, conic_shot *shot) {

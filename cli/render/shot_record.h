@@ -3,8 +3,6 @@
 #define CONIC_SHOT_RECORD_H
 
 #include "cli/scene/render_job.h"
-#include "conic/shot_file.h"
-#include "core/files/sha256.h"
 
 /* Before the scene is opened: begins to look at what it is made of, where anything is to say so. Errors: MEMORY. */
 conic_status cli_shot_begin_inputs(cli_session *session, cli_render_job *job);

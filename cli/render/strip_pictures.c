@@ -4,7 +4,6 @@
 #include "cli/render/frame_files.h"
 #include "cli/render/frames.h"
 #include "cli/render/units.h"
-#include "core/base/base.h"
 #include "core/base/machine.h"
 #include "core/image/image_common.h"
 #include "shots/strips.h"

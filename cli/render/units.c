@@ -1,12 +1,7 @@
 #include "cli/render/units.h"
 
-#include <string.h>
-
 #include "cli/render/frames.h"
-#include "cli/session_team.h"
-#include "shots/shot_plan.h"
 #include "source/shared_source.h"
-#include "source/source_parts.h"
 #include "source/source_samples.h"
 
 /* --- what is shared --- */

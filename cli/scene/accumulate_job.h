@@ -4,10 +4,6 @@
 
 #include "cli/arguments.h"
 #include "cli/json_write.h"
-#include "cli/session.h"
-#include "conic/accumulate.h"
-#include "conic/motion.h"
-#include "conic/shot.h"
 
 struct cli_render_job;
 

@@ -1,7 +1,5 @@
 #include "cli/scene/background_options.h"
 
-#include <string.h>
-
 #include "cli/scene/light_options.h"
 #include "shots/backdrop.h"
 

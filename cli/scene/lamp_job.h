@@ -4,7 +4,6 @@
 
 #include "cli/json_write.h"
 #include "cli/session.h"
-#include "conic/lighting.h"
 
 struct cli_render_job;
 

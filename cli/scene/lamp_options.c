@@ -1,7 +1,4 @@
-#include "cli/scene/lamp_job.h"
-
 #include "cli/scene/light_options.h"
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "shots/shot_plan.h"
 

@@ -1,7 +1,6 @@
 /* Colours of lights and backgrounds: in words, and in reports. */
 
 #include "cli/scene/light_options.h"
-#include "core/base/base.h"
 
 int cli_parse_color_to(const char *text, size_t length, double most, float color[3]) {
   char copy[128], grey[3 * sizeof copy];

@@ -1,6 +1,5 @@
 #include "cli/scene/light_options.h"
 
-#include "core/base/base.h"
 #include "core/files/file.h"
 
 /* Chosen by eye on scans, meshes and a terrain: a warm key light from the viewer's upper left gives the shape, a cool

@@ -1,7 +1,6 @@
 /* Whether options change anything, and go together. */
 #include "cli/scene/option_effects.h"
 
-#include <string.h>
 #include <strings.h>
 
 #include "cli/color_options.h"

@@ -1,7 +1,6 @@
 /* What the values of single options mean. */
 
 #include "cli/scene/scene_options.h"
-#include "core/base/base.h"
 
 /* gauss, hat, box, or confetti:A,B,N. */
 int cli_parse_kernel(const char *text, void *value) {

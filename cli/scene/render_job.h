@@ -2,16 +2,13 @@
 #ifndef CONIC_RENDER_JOB_H
 #define CONIC_RENDER_JOB_H
 
-#include "cli/arguments.h"
 #include "cli/device_option.h"
-#include "cli/json_write.h"
 #include "cli/scene/accumulate_job.h"
 #include "cli/scene/lamp_job.h"
 #include "cli/scene/option_effects.h"
 #include "cli/scene/shot_job.h"
 #include "cli/scene/top_job.h"
 #include "cli/team_report.h"
-#include "conic/shot.h"
 #include "core/files/sha256.h"
 #include "core/pictures/cryptomatte.h"
 

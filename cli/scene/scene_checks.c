@@ -1,12 +1,10 @@
 /* Which options of a scene go together. */
-#include <string.h>
 
 #include "cli/color_options.h"
 #include "cli/host_keeps.h"
 #include "cli/outputs.h"
 #include "cli/scene/scene_options.h"
 #include "cli/scene/views.h"
-#include "conic/layers_draw.h"
 
 /* A layered cloud knows what its values mean without all of them. */
 static int is_colored_by_value(const cli_render_job *job) {

@@ -1,6 +1,5 @@
 #include "cli/scene/stereo.h"
 
-#include "core/base/base.h"
 #include "core/files/file.h"
 
 int cli_parse_convergence(const char *text, void *value) {

@@ -2,8 +2,6 @@
 #ifndef CONIC_TOP_JOB_H
 #define CONIC_TOP_JOB_H
 
-#include <stdint.h>
-
 #include "cli/cut_region.h"
 #include "cli/json_write.h"
 #include "cli/session.h"

@@ -1,7 +1,5 @@
 #include "cli/scene/views.h"
 
-#include <string.h>
-
 #include "core/files/file.h"
 
 int cli_views_are_all(const char *view) {

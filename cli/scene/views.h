@@ -4,7 +4,6 @@
 
 #include "cli/json_write.h"
 #include "cli/session.h"
-#include "conic/source.h"
 
 /* What --camera, --view and --size say. */
 typedef struct cli_views_wish {

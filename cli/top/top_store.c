@@ -1,7 +1,5 @@
 #include "cli/top/top_store.h"
 
-#include "core/base/base.h"
-
 conic_status cli_top_store_open(conic_context *context, const char *path, size_t width, size_t pixel_bytes,
                                 size_t n_rows, uint64_t most_bytes, cli_top_store *store) {
   *store = (cli_top_store){

@@ -1,6 +1,5 @@
 #include "cli/top/top_tiff.h"
 
-#include "core/base/base.h"
 #include "core/pictures/image_samples.h"
 
 enum { BLOCK = CONIC_TOP_BLOCK, TILE = CONIC_TIFF_TILE };

@@ -3,8 +3,6 @@
 #define CONIC_TOP_TIFF_H
 
 #include "cli/top/top_store.h"
-#include "conic/context.h"
-#include "conic/image.h"
 #include "core/pictures/tiff_tiles.h"
 #include "source/top_view.h"
 

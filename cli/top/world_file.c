@@ -1,6 +1,5 @@
 #include "cli/top/top_tiff.h"
 
-#include "core/base/base.h"
 #include "core/files/file.h"
 #include "core/files/number.h"
 

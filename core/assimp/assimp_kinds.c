@@ -1,7 +1,5 @@
 #include "core/assimp/assimp_kinds.h"
 
-#include <string.h>
-
 #include "core/base/byte_order.h"
 #include "core/files/file.h"
 

@@ -1,7 +1,6 @@
 #include "core/assimp/assimp_part.h"
 
 #include "conic/triangles.h"
-#include "core/base/base.h"
 #include "core/base/context_struct.h"
 #include "core/files/file.h"
 #include "core/files/scratch.h"

@@ -1,6 +1,5 @@
 #include "core/assimp/assimp_part.h"
 
-#include "core/base/base.h"
 #include "core/base/color.h"
 #include "core/base/vectors.h"
 

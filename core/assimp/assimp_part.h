@@ -5,7 +5,6 @@
 
 #include "core/assimp/assimp_process.h"
 #include "core/files/input.h"
-#include "core/splats/builder.h"
 #include "core/splats/faces.h"
 #include "core/splats/point_slots.h"
 

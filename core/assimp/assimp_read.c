@@ -3,8 +3,6 @@
 
 #include "core/assimp/assimp_kinds.h"
 #include "core/assimp/assimp_part.h"
-#include "core/assimp/assimp_process.h"
-#include "core/base/base.h"
 #include "core/base/machine.h"
 #include "core/files/file.h"
 

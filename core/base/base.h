@@ -5,13 +5,8 @@
 
 #include <errno.h>
 #include <math.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "conic/context.h"
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"

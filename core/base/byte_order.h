@@ -4,8 +4,6 @@
 #define CONIC_BYTE_ORDER_H
 
 #include <stddef.h>
-#include <stdint.h>
-#include <string.h>
 
 #include "core/base/real.h"
 

@@ -2,7 +2,6 @@
 #ifndef CONIC_RADIX_H
 #define CONIC_RADIX_H
 
-#include <stddef.h>
 #include <stdint.h>
 
 #include "conic/context.h"

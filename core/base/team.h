@@ -3,7 +3,6 @@
 #ifndef CONIC_TEAM_H
 #define CONIC_TEAM_H
 
-#include <stddef.h>
 #include <stdint.h>
 
 #include "conic/context.h"

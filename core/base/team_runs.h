@@ -3,8 +3,6 @@
 #ifndef CONIC_TEAM_RUNS_H
 #define CONIC_TEAM_RUNS_H
 
-#include <stdint.h>
-
 #include "core/base/team.h"
 #include "core/base/threads.h"
 

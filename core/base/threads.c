@@ -1,8 +1,5 @@
 #include "core/base/threads.h"
 
-#include <pthread.h>
-#include <stdatomic.h>
-
 #include "core/base/base.h"
 #include "core/base/context_struct.h"
 

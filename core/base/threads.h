@@ -2,8 +2,6 @@
 #ifndef CONIC_THREADS_H
 #define CONIC_THREADS_H
 
-#include <stddef.h>
-
 #include "conic/context.h"
 
 /* Does item `i_item`; `i_thread` is below conic_context_threads and no two items at a time share one. */

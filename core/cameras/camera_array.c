@@ -1,5 +1,4 @@
 /* cameras.json of 3D Gaussian splatting: an array of centred cameras with their places in the world. */
-#include <string.h>
 
 #include "core/cameras/camera_list.h"
 #include "core/files/json_read.h"

@@ -1,6 +1,5 @@
 /* The cameras of a glTF: those at its nodes. */
 
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"

@@ -1,6 +1,5 @@
 /* conic's own JSON of one camera. */
 
-#include "core/base/base.h"
 #include "core/cameras/camera_list.h"
 #include "core/files/json_read.h"
 #include "core/image/view_arguments.h"

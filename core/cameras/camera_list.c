@@ -1,9 +1,7 @@
 #include "core/cameras/camera_list.h"
 
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/base/vectors.h"
-#include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/guard.h"
 #include "core/image/view_arguments.h"

@@ -1,6 +1,5 @@
 /* An .npz of view matrices, as gsplat takes them: viewmats (n, 4, 4), Ks (n, 3, 3), width and height. */
 
-#include "core/base/base.h"
 #include "core/cameras/camera_list.h"
 #include "core/files/numpy_array.h"
 #include "core/files/zip.h"

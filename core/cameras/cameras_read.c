@@ -1,12 +1,10 @@
 /* Finds the kind of a camera file, and the file in a folder. */
 
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/base/loan_find.h"
 #include "core/cameras/camera_list.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
-#include "core/files/input.h"
 #include "core/files/mapping.h"
 
 enum { PATH_ROOM = 4096 };

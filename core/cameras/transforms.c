@@ -1,6 +1,5 @@
 /* transforms.json: nerfstudio's, instant-ngp's and the original one of NeRF. */
 
-#include "core/base/base.h"
 #include "core/base/trigonometry.h"
 #include "core/cameras/camera_list.h"
 #include "core/files/json_read.h"

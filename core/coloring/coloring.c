@@ -1,6 +1,3 @@
-#include "conic/coloring.h"
-
-#include "core/base/base.h"
 #include "core/base/color.h"
 #include "core/base/vectors.h"
 #include "core/coloring/color_ramp.h"

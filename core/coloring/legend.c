@@ -1,6 +1,5 @@
 #include "core/coloring/legend.h"
 
-#include "core/base/base.h"
 #include "core/base/color.h"
 #include "core/coloring/color_ramp.h"
 #include "core/coloring/glyphs.h"

@@ -3,7 +3,6 @@
 #define CONIC_LEGEND_H
 
 #include "conic/coloring.h"
-#include "conic/image.h"
 
 /* Draws the legend over the lower right corner of the image's rgba, in a size that suits the picture; what does not fit
  * is cut off. */

@@ -1,7 +1,5 @@
 #include "core/coloring/value_limits.h"
 
-#include "core/base/base.h"
-
 uint64_t conic_value_stride(uint64_t n, uint64_t most) {
   uint64_t stride = 1;
   while (n > most * stride)

@@ -6,11 +6,9 @@
 
 #include <stdatomic.h>
 
-#include "core/base/base.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
 #include "core/estimate/features.h"
-#include "core/estimate/neighbourhood.h"
 #include "core/splats/clip.h"
 
 CONIC_DEFINE_OPTIONS(conic_estimate_options, .n_neighbours = 20, .cutoff = 1.5f)

@@ -2,8 +2,6 @@
 #ifndef CONIC_ESTIMATE_H
 #define CONIC_ESTIMATE_H
 
-#include <stdint.h>
-
 #include "conic/model.h"
 #include "core/estimate/neighbourhood.h"
 

@@ -2,7 +2,6 @@
  * plane is fitted at each place, and a point near a crease takes over the flattest plane of a neighbour in which it
  * lies, too. Where the planes of neighbours then meet sharply, both sides are clipped. */
 
-#include "core/base/base.h"
 #include "core/base/eigen.h"
 #include "core/base/vectors.h"
 #include "core/estimate/features.h"

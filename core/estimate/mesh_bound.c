@@ -2,7 +2,6 @@
  * ends. Where this could be seen, the vertex becomes one splat for each of its triangles, in the triangle's plane and
  * clipped at the two edges that meet there. */
 
-#include "core/base/base.h"
 #include "core/base/triangle_distance.h"
 #include "core/base/vectors.h"
 #include "core/estimate/estimate.h"

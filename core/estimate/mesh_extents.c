@@ -2,7 +2,6 @@
  * edges and the triangle's middle. An ellipse around these corners for all triangles of a vertex covers its share of
  * the surface; all ellipses together cover the whole surface. */
 
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/estimate/estimate.h"
 #include "core/estimate/incidence.h"

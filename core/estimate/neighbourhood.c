@@ -1,6 +1,5 @@
 #include "core/estimate/neighbourhood.h"
 
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 
 /* Slots in one call of a task, and calls between two reports of progress. */

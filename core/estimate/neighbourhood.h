@@ -2,8 +2,6 @@
 #ifndef CONIC_NEIGHBOURHOOD_H
 #define CONIC_NEIGHBOURHOOD_H
 
-#include <stdint.h>
-
 #include "core/base/team_runs.h"
 #include "core/estimate/neighbours.h"
 

@@ -1,7 +1,5 @@
 #include "core/estimate/neighbours.h"
 
-#include <string.h>
-
 enum { MAX_DEPTH = 34 };
 
 /* Two doubles at a time, one for each of two neighbouring boxes. Comparisons cannot be predicted, so nothing here

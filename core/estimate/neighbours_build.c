@@ -1,6 +1,5 @@
 /* Builds the kd-tree: coincident points are joined, then ranges are halved across their longest side. */
 
-#include "core/base/base.h"
 #include "core/base/random.h"
 #include "core/estimate/neighbours.h"
 

@@ -1,4 +1,3 @@
-#include "core/base/base.h"
 #include "core/base/eigen.h"
 #include "core/base/vectors.h"
 #include "core/estimate/neighbourhood.h"

@@ -2,10 +2,8 @@
  * neighbours. Such cells leave no gap, however unevenly a scanner sampled; they are cut off at a radius, so that they
  * close no hole. */
 
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/estimate/estimate.h"
-#include "core/estimate/neighbourhood.h"
 #include "core/estimate/voronoi_cell.h"
 #include "core/splats/ellipse.h"
 

@@ -1,7 +1,6 @@
 /* A slot's score says how little its neighbourhood is like a surface. The mean of the scores around it decides, so that
  * a leaf follows the leaves around it, and a sharp corner its faces. docs/notes/estimation.md has the measurements. */
 
-#include "core/base/base.h"
 #include "core/base/eigen.h"
 #include "core/base/vectors.h"
 #include "core/estimate/neighbourhood.h"

@@ -1,5 +1,3 @@
-#include "conic/splats.h"
-#include "core/base/base.h"
 #include "core/estimate/neighbours.h"
 #include "core/splats/columns.h"
 

@@ -1,7 +1,5 @@
 /* Normals of corners: round over edges flatter than an angle, sharp over others. */
 
-#include "conic/triangles.h"
-#include "core/base/base.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
 #include "core/estimate/neighbourhood.h"

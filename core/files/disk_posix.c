@@ -5,7 +5,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/files/disk.h"
 

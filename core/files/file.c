@@ -1,11 +1,8 @@
 #include "core/files/file.h"
 
-#include <time.h>
 #include <unistd.h>
 
-#include "core/base/base.h"
 #include "core/base/context_struct.h"
-#include "core/files/disk.h"
 #include "core/files/guard.h"
 #include "core/files/scratch.h"
 

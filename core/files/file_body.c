@@ -1,6 +1,5 @@
 #include "core/files/file_body.h"
 
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/files/file.h"
 

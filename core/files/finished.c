@@ -1,6 +1,5 @@
 #include "core/files/finished.h"
 
-#include "core/base/base.h"
 #include "core/files/disk.h"
 
 enum { N_DIGITS = CONIC_SHA256_ROOM - 1, MOST_BYTES = 1 << 30 };

@@ -10,7 +10,6 @@
 #ifndef CONIC_FINISHED_H
 #define CONIC_FINISHED_H
 
-#include "core/base/base.h"
 #include "core/files/sha256.h"
 
 typedef struct conic_finished {

@@ -1,6 +1,5 @@
 #include "core/files/guard.h"
 
-#include "core/base/base.h"
 #include "core/base/context_struct.h"
 
 static int is_file(const conic_file_identity *known, const conic_disk_entry *found) {

@@ -2,7 +2,6 @@
 #ifndef CONIC_GUARD_H
 #define CONIC_GUARD_H
 
-#include "conic/context.h"
 #include "core/files/disk.h"
 
 /* From now on every file opened for reading is noted, and cannot be opened for writing; earlier ones are forgotten. The

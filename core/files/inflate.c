@@ -1,7 +1,5 @@
 #include "core/files/inflate.h"
 
-#include "core/base/base.h"
-
 #if CONIC_HAVE_ZLIB
 
 #include <zlib.h>

@@ -3,10 +3,6 @@
 #include <stdarg.h>
 #include <unistd.h>
 
-#include <stdlib.h>
-
-#include "core/base/base.h"
-#include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/guard.h"
 #include "core/files/number.h"

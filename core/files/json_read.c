@@ -1,6 +1,5 @@
 #include "core/files/json_read.h"
 
-#include "core/base/base.h"
 #include "core/files/input.h"
 #include "core/files/number.h"
 

@@ -1,7 +1,5 @@
 #include "core/files/lzf.h"
 
-#include <string.h>
-
 int conic_lzf_unpack(const unsigned char *packed, size_t n_packed, unsigned char *bytes, size_t n_bytes) {
   size_t from = 0, to = 0;
   while (from < n_packed) {

@@ -1,9 +1,7 @@
 #include "core/files/mapping.h"
 
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/files/disk.h"
-#include "core/files/input.h"
 
 conic_status conic_mapping_take(conic_input *input, uint64_t most, conic_mapping *mapping) {
   const uint64_t n_bytes = input->start_bytes + input->size_bytes;

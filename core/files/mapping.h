@@ -2,7 +2,6 @@
 #ifndef CONIC_MAPPING_H
 #define CONIC_MAPPING_H
 
-#include "core/base/base.h"
 #include "core/files/input.h"
 
 typedef struct conic_mapping {

@@ -1,7 +1,5 @@
 #include "core/files/sha256.h"
 
-#include <string.h>
-
 #include "core/base/byte_order.h"
 
 /* The first 32 bits of the fractions of the cube roots of the first 64 primes. */

@@ -1,7 +1,5 @@
 #include "core/files/spool.h"
 
-#include "core/base/base.h"
-
 void conic_spool_begin(conic_context *context, const char *path, size_t memory_bytes, conic_spool *spool) {
   memset(spool, 0, sizeof *spool);
   spool->context = context;

@@ -2,7 +2,6 @@
 #ifndef CONIC_SPOOL_H
 #define CONIC_SPOOL_H
 
-#include "core/base/base.h"
 #include "core/files/scratch.h"
 
 enum { CONIC_SPOOL_SLAB = 1 << 18 };

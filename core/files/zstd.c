@@ -1,7 +1,5 @@
 #include "core/files/zstd.h"
 
-#include "core/base/base.h"
-
 #if CONIC_HAVE_ZSTD
 
 #include <zstd.h>

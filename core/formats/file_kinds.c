@@ -1,7 +1,5 @@
 #include "core/formats/file_kinds.h"
 
-#include <string.h>
-
 #include "core/files/file.h"
 
 const char conic_readable_kinds[] =

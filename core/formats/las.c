@@ -1,14 +1,10 @@
 #include "core/formats/readers.h"
 
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/files/las_layout.h"
 #include "core/formats/las_fields.h"
-#include "core/formats/ply_source.h"
 #include "core/laz/laz.h"
-#include "core/splats/builder.h"
 #include "core/splats/point_fields.h"
-#include "core/splats/raw_colors.h"
 
 enum { BLOCK = 256 };
 

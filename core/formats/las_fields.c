@@ -1,7 +1,5 @@
 #include "core/formats/las_fields.h"
 
-#include <string.h>
-
 #include "core/base/byte_order.h"
 #include "core/laz/laz.h"
 

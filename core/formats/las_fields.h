@@ -3,7 +3,6 @@
 #ifndef CONIC_LAS_FIELDS_H
 #define CONIC_LAS_FIELDS_H
 
-#include "core/files/input.h"
 #include "core/formats/ply_source.h"
 
 enum { CONIC_LAS_MOST_FIELDS = 128, CONIC_LAS_NAME_ROOM = 40, CONIC_LAS_PACKING_BYTES = 70 };

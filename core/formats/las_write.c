@@ -1,6 +1,5 @@
 #include "core/formats/las_write.h"
 
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/base/color.h"
 #include "core/files/disk.h"
@@ -8,7 +7,6 @@
 #include "core/files/las_layout.h"
 #include "core/formats/las_fields.h"
 #include "core/splats/point_fields.h"
-#include "core/splats/point_values.h"
 
 enum { EXTRA = 192, MOST_RECORDS = 1 << 20 };
 enum { GPS_IS_ADJUSTED = 1, IS_WELL_KNOWN_TEXT = 16 }; /* of the encoding */

@@ -1,6 +1,5 @@
 #include "core/formats/material_file.h"
 
-#include "core/base/base.h"
 #include "core/base/color.h"
 #include "core/files/file.h"
 #include "core/files/input.h"

@@ -2,12 +2,9 @@
 
 #include "core/assimp/assimp_kinds.h"
 #include "core/assimp/assimp_read.h"
-#include "core/base/base.h"
 #include "core/files/file.h"
-#include "core/files/input.h"
 #include "core/formats/file_kinds.h"
 #include "core/formats/readers.h"
-#include "core/splats/faces.h"
 #include "core/splats/point_fields.h"
 
 CONIC_DEFINE_OPTIONS(conic_read_options, .cutoff = 1.5f)

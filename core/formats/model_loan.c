@@ -1,10 +1,7 @@
 #include "core/formats/readers.h"
 
-#include "conic/triangles.h"
-#include "core/base/base.h"
 #include "core/base/loan_find.h"
 #include "core/splats/columns.h"
-#include "core/splats/faces.h"
 
 int conic_model_is_lent(const conic_context *context, const char *name) {
   return conic_loan_find(context, name, "splats") || conic_loan_find(context, name, "triangles");

@@ -3,7 +3,6 @@
 #ifndef CONIC_MODEL_PART_H
 #define CONIC_MODEL_PART_H
 
-#include "conic/model.h"
 #include "core/splats/builder.h"
 #include "core/splats/raw_colors.h"
 

@@ -2,7 +2,6 @@
 #ifndef CONIC_MODEL_READ_H
 #define CONIC_MODEL_READ_H
 
-#include "conic/model.h"
 #include "conic/triangles.h"
 #include "core/files/input.h"
 #include "core/splats/builder.h"

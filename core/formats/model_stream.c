@@ -1,10 +1,7 @@
 #include <unistd.h>
 
-#include "core/base/base.h"
-#include "core/formats/model_part.h"
 #include "core/formats/model_read.h"
 #include "core/formats/readers.h"
-#include "core/splats/raw_colors.h"
 
 /* State between the reader and the receiver, for colours whose scale only the whole file tells. */
 typedef struct streaming {

@@ -1,10 +1,7 @@
 #include "core/formats/readers.h"
 
-#include "core/base/base.h"
 #include "core/base/color.h"
 #include "core/base/vectors.h"
-#include "core/splats/builder.h"
-#include "core/splats/faces.h"
 #include "core/splats/polygon.h"
 
 /* A face's corner that names a normal; the normal may be read later. */

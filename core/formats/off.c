@@ -1,11 +1,8 @@
 /* OFF: a polygon mesh as text. [ST][C][N]OFF says what a vertex has beside its place; many files leave that out. */
-#include "core/base/base.h"
 #include "core/base/color.h"
 #include "core/formats/readers.h"
 #include "core/splats/face_colors.h"
-#include "core/splats/faces.h"
 #include "core/splats/polygon.h"
-#include "core/splats/raw_colors.h"
 
 /* On a line: enough for polygons of a thousand corners. */
 enum { MOST_NUMBERS = 1024 };

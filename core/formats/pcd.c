@@ -1,13 +1,10 @@
 #include "core/formats/readers.h"
 
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/files/lzf.h"
 #include "core/files/number.h"
 #include "core/formats/pcd_header.h"
-#include "core/formats/ply_source.h"
 #include "core/splats/point_fields.h"
-#include "core/splats/raw_colors.h"
 
 enum { BLOCK = 256, PACKED = CONIC_TEXT_N_MEANINGS, VALUES, N_SLOTS = VALUES + CONIC_MOST_POINT_VALUES };
 

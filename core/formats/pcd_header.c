@@ -1,7 +1,5 @@
 #include "core/formats/pcd_header.h"
 
-#include <string.h>
-
 #include "core/files/number.h"
 #include "core/splats/builder.h"
 

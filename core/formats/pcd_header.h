@@ -2,7 +2,6 @@
 #ifndef CONIC_PCD_HEADER_H
 #define CONIC_PCD_HEADER_H
 
-#include "core/files/input.h"
 #include "core/formats/ply_header.h"
 #include "core/formats/text_columns.h"
 

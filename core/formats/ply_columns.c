@@ -1,6 +1,5 @@
 #include "core/formats/ply_columns.h"
 
-#include "core/base/base.h"
 #include "core/base/color.h"
 #include "core/base/gaussian.h"
 #include "core/base/vectors.h"

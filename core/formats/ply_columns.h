@@ -2,7 +2,6 @@
 #ifndef CONIC_PLY_COLUMNS_H
 #define CONIC_PLY_COLUMNS_H
 
-#include "conic/splats.h"
 #include "core/formats/ply_header.h"
 #include "core/splats/builder.h"
 

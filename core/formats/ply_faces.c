@@ -1,4 +1,3 @@
-#include "core/base/base.h"
 #include "core/formats/ply_texture.h"
 #include "core/formats/readers.h"
 #include "core/splats/polygon.h"

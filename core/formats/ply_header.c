@@ -1,6 +1,5 @@
 #include "core/formats/ply_header.h"
 
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 
 typedef struct type_description {

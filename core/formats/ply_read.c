@@ -1,9 +1,7 @@
 #include "core/formats/readers.h"
 
-#include "core/base/base.h"
 #include "core/formats/ply_columns.h"
 #include "core/formats/ply_texture.h"
-#include "core/splats/raw_colors.h"
 
 /* State of reading the vertices. */
 typedef struct vertex_reader {

@@ -1,6 +1,5 @@
 #include "core/formats/ply_source.h"
 
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/files/number.h"
 

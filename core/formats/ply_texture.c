@@ -1,9 +1,6 @@
 #include "core/formats/ply_texture.h"
 
-#include <string.h>
-
 #include "core/base/color.h"
-#include "core/splats/builder.h"
 
 /* The property of that name that is a list, or is none; -1 where there is no such property. */
 static int find(const conic_ply_header *header, const conic_ply_element *element, const char *name, int is_list) {

@@ -2,7 +2,6 @@
 #ifndef CONIC_PLY_TEXTURE_H
 #define CONIC_PLY_TEXTURE_H
 
-#include "conic/model.h"
 #include "core/formats/ply_source.h"
 #include "core/splats/face_colors.h"
 

@@ -1,6 +1,4 @@
-#include "conic/model.h"
 #include "conic/version.h"
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/base/color.h"
 #include "core/base/vectors.h"
@@ -9,7 +7,6 @@
 #include "core/formats/ply_header.h"
 #include "core/splats/columns.h"
 #include "core/splats/point_fields.h"
-#include "core/splats/point_values.h"
 
 /* Rows that are laid out together, and the most values and bytes of one. */
 enum {

@@ -3,11 +3,8 @@
 #ifndef CONIC_READERS_H
 #define CONIC_READERS_H
 
-#include "conic/model.h"
-#include "core/files/input.h"
 #include "core/formats/model_part.h"
 #include "core/formats/ply_source.h"
-#include "core/splats/builder.h"
 
 /* LAS: versions 1.0 to 1.5, point formats 0 to 10, as they are or packed (LAZ: core/laz).
  *

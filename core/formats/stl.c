@@ -2,13 +2,11 @@
  * out: they are the faces' own. */
 #include <strings.h>
 
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/base/color.h"
 #include "core/files/number.h"
 #include "core/formats/readers.h"
 #include "core/splats/face_colors.h"
-#include "core/splats/faces.h"
 #include "core/splats/point_slots.h"
 
 enum { HEAD_BYTES = 84, FACE_BYTES = 50 };

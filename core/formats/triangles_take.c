@@ -1,11 +1,8 @@
 /* From a model to triangles. */
 
-#include "conic/triangles.h"
-#include "core/base/base.h"
 #include "core/files/file.h"
 #include "core/formats/material_file.h"
 #include "core/formats/model_read.h"
-#include "core/splats/faces.h"
 
 static int are_opaque(const conic_splats *points) {
   size_t i = 0;

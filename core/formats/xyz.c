@@ -1,12 +1,8 @@
 #include "core/formats/readers.h"
 
-#include "core/base/base.h"
-#include "core/files/input.h"
 #include "core/formats/file_kinds.h"
 #include "core/formats/text_columns.h"
-#include "core/splats/builder.h"
 #include "core/splats/point_fields.h"
-#include "core/splats/raw_colors.h"
 
 /* --- the heading --- */
 

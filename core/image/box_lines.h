@@ -2,7 +2,6 @@
 #ifndef CONIC_BOX_LINES_H
 #define CONIC_BOX_LINES_H
 
-#include "conic/camera.h"
 #include "conic/image.h"
 
 /* Paints the twelve edges of a box, from its low corner to its high one in the world, into the plane rgba of a map of

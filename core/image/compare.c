@@ -1,6 +1,5 @@
 #include "core/image/compare.h"
 
-#include "core/base/base.h"
 #include "core/base/power.h"
 #include "core/image/image_common.h"
 

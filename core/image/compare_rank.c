@@ -1,6 +1,5 @@
 /* Percentiles and counts of the pixels' differences, without memory for them. The bits of floats that are not negative
  * have the floats' order, so that three counts, of 2¹¹ classes each, find a rank exactly. */
-#include "core/base/real.h"
 #include "core/image/compare.h"
 #include "core/image/image_common.h"
 

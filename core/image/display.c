@@ -1,6 +1,5 @@
 /* Display values: colours as a screen takes them, and as Gaussian profiles composite them. */
 
-#include "core/base/memory.h"
 #include "core/image/compare.h"
 #include "core/image/image_common.h"
 

@@ -3,7 +3,6 @@
  * describes it. All filters are sums of products of two one-dimensional ones. A tile's rows are filtered across one by
  * one, and down over the last rows. */
 
-#include "core/base/base.h"
 #include "core/base/gaussian.h"
 #include "core/base/power.h"
 #include "core/base/trigonometry.h"

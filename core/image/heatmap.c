@@ -1,6 +1,3 @@
-#include "conic/image.h"
-
-#include "core/base/base.h"
 #include "core/image/compare.h"
 #include "core/image/image_common.h"
 

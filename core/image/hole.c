@@ -1,6 +1,5 @@
 /* The largest hole: pixels that the first image covers and the second does not. */
 
-#include "core/base/memory.h"
 #include "core/image/compare.h"
 #include "core/image/image_common.h"
 

@@ -1,8 +1,5 @@
-#include "conic/image.h"
-
 #include <limits.h>
 
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/base/context_struct.h"
 #include "core/files/disk.h"

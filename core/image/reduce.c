@@ -1,6 +1,5 @@
 /* Reduces pictures by means over boxes, whose edges may cut pixels: first across, then down. */
 
-#include "core/base/base.h"
 #include "core/image/compare.h"
 
 typedef struct shrinking {

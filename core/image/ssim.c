@@ -1,7 +1,6 @@
 /* Structural similarity (Wang, Bovik, Sheikh, Simoncelli 2004) and squared differences of the colour as a screen shows
  * it, channel by channel, in memory for a few rows. */
 
-#include "core/base/base.h"
 #include "core/image/compare.h"
 #include "core/image/image_common.h"
 

@@ -1,6 +1,5 @@
 #include "core/image/texture_levels.h"
 
-#include "core/base/base.h"
 #include "core/base/context_struct.h"
 #include "core/image/image_common.h"
 

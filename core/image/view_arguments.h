@@ -2,7 +2,6 @@
 #ifndef CONIC_VIEW_ARGUMENTS_H
 #define CONIC_VIEW_ARGUMENTS_H
 
-#include "conic/camera.h"
 #include "conic/render.h"
 
 /* Why a matrix is not a rotation and a translation; null if it is. */

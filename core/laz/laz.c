@@ -1,6 +1,5 @@
 #include "core/laz/laz.h"
 
-#include "core/base/base.h"
 #include "core/laz/laz_points.h"
 #include "core/laz/laz_stream.h"
 

@@ -7,7 +7,6 @@
 #ifndef CONIC_LAZ_H
 #define CONIC_LAZ_H
 
-#include "core/base/base.h"
 #include "core/files/input.h"
 
 /* Chunks have several sizes: the table counts their points. */

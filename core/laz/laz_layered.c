@@ -1,7 +1,6 @@
 /* Points in layers: point formats 6 to 10. Every attribute has its own bytes and models, and each of four scanner
  * channels has its own models. The layers are decoded one after the other, some points at a time. */
 
-#include "core/base/base.h"
 #include "core/laz/laz_fields.h"
 #include "core/laz/laz_points.h"
 

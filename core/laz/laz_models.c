@@ -1,7 +1,5 @@
 #include "core/laz/laz_models.h"
 
-#include "core/base/base.h"
-
 enum { BLOCK_NUMBERS = 1 << 15, MOST_TOTAL = 1 << 15, MOST_BITS = 1 << 13 };
 
 void conic_laz_arena_rewind(conic_laz_arena *arena) {

@@ -1,6 +1,3 @@
-#include "core/laz/laz.h"
-
-#include "core/base/base.h"
 #include "core/laz/laz_stream.h"
 #include "core/laz/laz_table.h"
 

@@ -1,6 +1,5 @@
 /* Points one after the other: point formats 0 to 5. */
 
-#include "core/base/base.h"
 #include "core/laz/laz_fields.h"
 #include "core/laz/laz_points.h"
 

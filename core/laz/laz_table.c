@@ -1,6 +1,5 @@
 #include "core/laz/laz_table.h"
 
-#include "core/base/memory.h"
 #include "core/laz/laz_stream.h"
 
 uint64_t conic_laz_table_count(const unsigned char *head) {

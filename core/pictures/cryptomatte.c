@@ -1,6 +1,5 @@
 #include "core/pictures/cryptomatte.h"
 
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 
 enum { N_LAYERS = 3, DEPTH = 2 * N_LAYERS };

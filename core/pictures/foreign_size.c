@@ -1,7 +1,6 @@
 /* The size that a picture's header gives, in formats that OpenImageIO decodes, or takes memory for, as soon as it opens
  * them. */
 
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/files/disk.h"
 #include "core/pictures/image_foreign.h"

@@ -1,7 +1,5 @@
 #include "core/pictures/image_channels.h"
 
-#include <string.h>
-
 #include "core/image/image_common.h"
 
 conic_channel conic_channel_find(const char *name) {

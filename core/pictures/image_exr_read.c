@@ -1,6 +1,5 @@
 #include "core/pictures/image_exr.h"
 
-#include "core/base/base.h"
 #include "core/files/disk.h"
 #include "core/pictures/image_foreign.h"
 

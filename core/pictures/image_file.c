@@ -1,10 +1,7 @@
 /* Chooses an image's format: for writing by the ending of its name, for reading by the file's first bytes. */
 #include <strings.h>
 
-#include "conic/image.h"
-#include "core/base/base.h"
 #include "core/base/loan_find.h"
-#include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/guard.h"
 #include "core/image/image_common.h"

@@ -1,6 +1,5 @@
 #include "core/pictures/image_foreign.h"
 
-#include "core/base/base.h"
 #include "core/files/file.h"
 #include "core/image/image_common.h"
 #include "core/pictures/image_channels.h"

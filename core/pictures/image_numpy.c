@@ -1,6 +1,5 @@
 #include "core/pictures/image_numpy.h"
 
-#include "core/base/base.h"
 #include "core/files/mapping.h"
 #include "core/files/numpy_array.h"
 #include "core/files/zip.h"

@@ -1,7 +1,6 @@
 /* Reads a picture to be judged, and the ranges that its values stand for. */
 #include "conic/picture.h"
 
-#include "core/base/base.h"
 #include "core/base/color.h"
 #include "core/files/file.h"
 #include "core/image/image_common.h"

@@ -1,6 +1,5 @@
 #include "core/pictures/picture_shot.h"
 
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/base/loan_find.h"
 #include "core/files/inflate.h"

@@ -1,6 +1,5 @@
 #include "core/pictures/tiff_tiles.h"
 
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/files/file.h"
 

@@ -3,8 +3,6 @@
 #ifndef CONIC_TIFF_TILES_H
 #define CONIC_TIFF_TILES_H
 
-#include <stdint.h>
-
 #include "core/pictures/georeference.h"
 
 enum { CONIC_TIFF_TILE = 256 }; /* the edge of a tile in pixels */

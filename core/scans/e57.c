@@ -1,12 +1,9 @@
 #include "core/formats/readers.h"
 
-#include "core/base/base.h"
 #include "core/base/trigonometry.h"
-#include "core/base/vectors.h"
 #include "core/scans/e57_file.h"
 #include "core/scans/sight.h"
 #include "core/splats/point_fields.h"
-#include "core/splats/raw_colors.h"
 
 /* The meanings of a scan's columns. */
 enum {

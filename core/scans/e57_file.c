@@ -1,6 +1,5 @@
 #include "core/scans/e57_file.h"
 
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 
 enum { HEADER_BYTES = 48, SUM_BYTES = 4, LEAST_PAGE = 64, MOST_PAGE = 1 << 20 };

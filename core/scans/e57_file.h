@@ -2,8 +2,6 @@
 #ifndef CONIC_E57_FILE_H
 #define CONIC_E57_FILE_H
 
-#include "core/base/base.h"
-#include "core/files/input.h"
 #include "core/files/mapping.h"
 
 typedef struct conic_e57_file {

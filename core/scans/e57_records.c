@@ -1,6 +1,5 @@
 #include "core/scans/e57_file.h"
 
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 
 enum { SECTION_BYTES = 32, PACKET_BYTES = 4, INDEX_PACKET = 0, DATA_PACKET = 1, IGNORED_PACKET = 2 };

@@ -1,4 +1,3 @@
-#include "core/base/base.h"
 #include "core/scans/e57_file.h"
 
 int conic_e57_column_find(const conic_e57_scan *scan, const char *name) {

@@ -1,10 +1,8 @@
 #include "core/formats/readers.h"
 
-#include "core/base/base.h"
 #include "core/files/number.h"
 #include "core/scans/sight.h"
 #include "core/splats/point_fields.h"
-#include "core/splats/raw_colors.h"
 
 /* Lines before the points: columns, rows, the scanner's place, its three axes, and the rows of a matrix that multiplies
  * points from the right. */

@@ -1,7 +1,5 @@
 #include "core/scenes/scene_kind.h"
 
-#include "conic/image.h"
-#include "core/base/base.h"
 #include "core/base/color.h"
 #include "core/base/random.h"
 #include "core/base/trigonometry.h"

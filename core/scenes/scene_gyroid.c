@@ -1,5 +1,3 @@
-#include <math.h>
-
 #include "core/base/trigonometry.h"
 #include "core/scenes/scene_kind.h"
 

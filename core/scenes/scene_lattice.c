@@ -1,4 +1,3 @@
-#include "core/base/base.h"
 #include "core/scenes/scene_kind.h"
 
 /* found · n_wanted / n_found, rounded, computed as found minus its share of the surplus. The surplus is small where the

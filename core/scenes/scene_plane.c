@@ -1,5 +1,3 @@
-#include <math.h>
-
 #include "core/scenes/scene_kind.h"
 
 /* A checkerboard of 8 × 8: white, and a grey of code 32; the square at (-½, -½) is dark. */

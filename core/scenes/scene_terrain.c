@@ -1,6 +1,5 @@
 #include "core/scenes/scene_terrain.h"
 
-#include "core/base/base.h"
 #include "core/base/random.h"
 #include "core/scenes/noise.h"
 #include "core/scenes/scene_kind.h"

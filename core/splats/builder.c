@@ -1,6 +1,5 @@
 #include "core/splats/builder.h"
 
-#include "core/base/base.h"
 #include "core/splats/splats_gather.h"
 
 /* From here on a point is far out. */

@@ -2,7 +2,6 @@
 #ifndef CONIC_BUILDER_H
 #define CONIC_BUILDER_H
 
-#include "conic/model.h"
 #include "core/splats/point_values.h"
 
 /* Some of a file's points in a row, counted as they stand there, wanted or not: from `first` to before `end`. */

@@ -1,6 +1,5 @@
 /* Dots: splats that face whoever looks. */
 
-#include "conic/splats.h"
 #include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/splats/columns.h"

@@ -1,7 +1,6 @@
 #include "core/splats/face_colors.h"
 
 #include "conic/triangles.h"
-#include "core/base/base.h"
 #include "core/base/color.h"
 #include "core/splats/faces.h"
 

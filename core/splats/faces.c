@@ -1,7 +1,6 @@
 #include "core/splats/faces.h"
 
 #include "conic/triangles.h"
-#include "core/base/base.h"
 
 conic_status conic_faces_create(conic_context *context, conic_faces **faces) {
   *faces = conic_memory_allocate_zeroed(context, 1, sizeof **faces);

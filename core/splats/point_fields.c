@@ -2,7 +2,6 @@
 
 #include <limits.h>
 
-#include "core/base/base.h"
 #include "core/base/nearest_word.h"
 
 enum { NAME_ROOM = sizeof(((conic_model_field *)0)->name) };

@@ -1,6 +1,5 @@
 #include "core/splats/point_filter.h"
 
-#include "core/base/base.h"
 #include "core/files/number.h"
 
 /* So many comparisons, and so deep. */

@@ -1,7 +1,5 @@
 #include "core/splats/point_slots.h"
 
-#include "core/base/base.h"
-
 /* The bits of a number, with -0 as 0. */
 static uint32_t bits_of(float value) {
   uint32_t bits;

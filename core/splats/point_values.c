@@ -1,6 +1,5 @@
 #include "core/splats/point_values.h"
 
-#include "core/base/base.h"
 #include "core/splats/columns.h"
 
 conic_status conic_point_values_reserve(conic_context *context, conic_point_values *values, size_t room) {

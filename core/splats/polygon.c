@@ -2,8 +2,6 @@
  * the triangles, and the polygon goes on without the corner. */
 #include "core/splats/polygon.h"
 
-#include <string.h>
-
 #include "core/base/vectors.h"
 #include "core/splats/faces.h"
 

@@ -1,4 +1,3 @@
-#include "conic/splats.h"
 #include "core/base/base.h"
 #include "core/base/rank.h"
 #include "core/splats/columns.h"

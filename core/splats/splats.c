@@ -1,6 +1,3 @@
-#include "conic/splats.h"
-
-#include "core/base/base.h"
 #include "core/splats/columns.h"
 #include "core/splats/point_values.h"
 #include "core/splats/splats_gather.h"

@@ -1,5 +1,4 @@
 /* A stable random choice of splats. */
-#include "conic/model.h"
 #include "core/base/memory.h"
 #include "core/base/random.h"
 #include "core/splats/columns.h"

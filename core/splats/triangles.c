@@ -1,5 +1,3 @@
-#include "conic/triangles.h"
-
 #include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/splats/columns.h"

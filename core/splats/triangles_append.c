@@ -1,6 +1,5 @@
 /* Two sets of triangles made one. */
 
-#include "conic/triangles.h"
 #include "core/base/base.h"
 #include "core/splats/columns.h"
 

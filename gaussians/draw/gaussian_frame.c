@@ -1,10 +1,8 @@
 /* A picture of Gaussians: set up, put in order, binned, composited. */
 
 #include "core/base/base.h"
-#include "core/base/radix.h"
 #include "core/image/view_arguments.h"
 #include "gaussians/draw/gaussian_device.h"
-#include "gaussians/draw/gaussian_parts.h"
 #include "gaussians/draw/view_rays.h"
 
 enum { SET_UP_RUN = 2048 };

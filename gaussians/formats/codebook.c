@@ -1,6 +1,5 @@
 #include "gaussians/formats/codebook.h"
 
-#include "core/base/base.h"
 #include "core/base/power.h"
 
 enum { BINS = 65536, ROUNDS = 12 };

@@ -1,7 +1,6 @@
 /* PlayCanvas's compressed PLY: a box of each 256 Gaussians, within which numbers of 8 to 11 bits place them. */
 
 #include "conic/version.h"
-#include "core/base/base.h"
 #include "core/formats/ply_source.h"
 #include "gaussians/formats/gaussian_formats.h"
 #include "gaussians/scene/activation.h"

@@ -2,11 +2,7 @@
 #ifndef CONIC_GAUSSIAN_FORMATS_H
 #define CONIC_GAUSSIAN_FORMATS_H
 
-#include <stdio.h>
-
-#include "conic/gaussians.h"
 #include "core/base/byte_order.h"
-#include "core/files/input.h"
 #include "core/files/mapping.h"
 #include "core/formats/ply_header.h"
 #include "gaussians/scene/gaussian_set.h"

@@ -1,6 +1,5 @@
 /* What a glTF says of its Gaussians, and the buffers that they are in. */
 
-#include "core/base/base.h"
 #include "core/files/file.h"
 #include "gaussians/formats/gaussian_gltf.h"
 

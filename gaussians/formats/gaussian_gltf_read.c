@@ -1,7 +1,6 @@
 /* Gaussians in glTF, by KHR_gaussian_splatting and as it was before its name was settled: the points of primitives,
  * where the nodes put them. */
 
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "gaussians/formats/gaussian_gltf.h"
 #include "gaussians/scene/activation.h"

@@ -3,7 +3,6 @@
 #include <stdarg.h>
 
 #include "conic/version.h"
-#include "core/base/base.h"
 #include "core/files/number.h"
 #include "gaussians/formats/gaussian_formats.h"
 

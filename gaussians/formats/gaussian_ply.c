@@ -1,7 +1,6 @@
 /* Gaussians in PLY, as 3DGS, 2DGS and Mip-Splatting write them: a row a Gaussian, before activation. */
 
 #include "conic/version.h"
-#include "core/base/base.h"
 #include "core/formats/ply_source.h"
 #include "gaussians/formats/gaussian_formats.h"
 #include "gaussians/scene/activation.h"

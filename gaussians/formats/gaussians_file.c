@@ -1,6 +1,5 @@
 /* Gaussian scenes by whatever format: which a file is, and its reader and writer. */
 
-#include "core/base/base.h"
 #include "core/base/loan_find.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"

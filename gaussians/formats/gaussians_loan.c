@@ -1,9 +1,5 @@
 #include "gaussians/formats/gaussian_formats.h"
 
-#include "core/base/base.h"
-#include "gaussians/scene/gaussian_set.h"
-#include "gaussians/scene/half.h"
-
 conic_status conic_gaussians_copy_lent(conic_context *context, const char *name, const conic_gaussians *lent,
                                        const conic_gaussians_read_options *options, conic_gaussians *gaussians) {
   conic_status status = conic_gaussians_check(context, lent, name);

@@ -1,6 +1,5 @@
 /* Gaussian scenes as models of splats, for what draws, measures or keeps surfaces. */
 
-#include "core/base/base.h"
 #include "core/base/gaussian.h"
 #include "gaussians/formats/gaussian_formats.h"
 

@@ -1,4 +1,3 @@
-#include "core/base/base.h"
 #include "gaussians/formats/codebook.h"
 
 /* The vectors order[first] … Their squared distances from their mean add up to `squares`. */

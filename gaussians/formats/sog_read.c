@@ -1,6 +1,5 @@
 /* .sog, version 2: meta.json, and pictures whose pixels are the Gaussians, row by row; in a folder or a ZIP archive. */
 
-#include "core/base/base.h"
 #include "core/base/gaussian.h"
 #include "core/files/file.h"
 #include "core/files/json_read.h"

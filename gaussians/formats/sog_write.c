@@ -1,7 +1,6 @@
 /* .sog, version 2, as a ZIP archive: see sog_read.c. */
 
 #include "conic/version.h"
-#include "core/base/base.h"
 #include "core/base/power.h"
 #include "core/files/number.h"
 #include "core/files/zip.h"

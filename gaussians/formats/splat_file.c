@@ -1,6 +1,5 @@
 /* .splat: 32 bytes a Gaussian, after no header: three floats of mean, three of scale, four bytes of colour and opacity,
  * four of rotation. */
-#include <math.h>
 
 #include "gaussians/formats/gaussian_formats.h"
 

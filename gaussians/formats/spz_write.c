@@ -1,4 +1,3 @@
-#include "core/base/base.h"
 #include "core/files/inflate.h"
 #include "core/files/zstd.h"
 #include "gaussians/formats/spz_layout.h"

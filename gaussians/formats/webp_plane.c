@@ -1,7 +1,5 @@
 #include "gaussians/formats/webp_plane.h"
 
-#include "core/base/base.h"
-
 #if CONIC_HAVE_WEBP
 
 #include <webp/decode.h>

@@ -1,6 +1,5 @@
 /* Frames, and scenes turned from one to another. */
 
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "gaussians/scene/gaussian_set.h"
 #include "gaussians/scene/harmonics.h"

@@ -1,6 +1,5 @@
 #include "gaussians/scene/gaussian_set.h"
 
-#include "core/base/base.h"
 #include "gaussians/scene/activation.h"
 
 int conic_degree_of_coefficients(size_t n) {

@@ -1,6 +1,5 @@
 /* How far two scenes are apart, Gaussian by Gaussian. */
 
-#include "core/base/base.h"
 #include "gaussians/scene/gaussian_set.h"
 
 /* 0 where both have the same bits. */

@@ -1,6 +1,5 @@
 #include "gaussians/scene/made_gaussians.h"
 
-#include "core/base/base.h"
 #include "core/base/random.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"

@@ -1,6 +1,5 @@
 /* Gaussians along Morton's curve. */
 
-#include "core/base/base.h"
 #include "core/base/radix.h"
 #include "gaussians/scene/gaussian_set.h"
 

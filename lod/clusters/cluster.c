@@ -1,6 +1,5 @@
 #include "lod/clusters/cluster.h"
 
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 
 double conic_cluster_edge_length(const conic_clustered_mesh *mesh, uint32_t cluster) {

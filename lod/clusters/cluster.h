@@ -2,9 +2,6 @@
 #ifndef CONIC_CLUSTER_H
 #define CONIC_CLUSTER_H
 
-#include <stdint.h>
-
-#include "conic/triangles.h"
 #include "lod/mesh/mesh_clusters.h"
 
 /* Splats that are drawn as what they are, beside a surface. In the mesh they are the last faces, two each: a rectangle

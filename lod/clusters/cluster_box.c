@@ -2,7 +2,6 @@
  * looking at each face along the axis and at the lines that pass it, which gives the same as asking every line for
  * every face. */
 
-#include "core/base/base.h"
 #include "core/splats/ellipse.h"
 #include "lod/clusters/cluster_sample.h"
 

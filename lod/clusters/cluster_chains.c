@@ -1,6 +1,5 @@
 /* Chains: where two clusters meet, from one corner that a third has too to the next. A simpler cluster may leave out
  * what lies between a chain's ends. What a finer neighbour still has of it is put into both when they are drawn. */
-#include "core/base/base.h"
 #include "lod/clusters/cluster.h"
 
 /* An edge between two clusters, its ends as places. */

@@ -1,7 +1,6 @@
 /* How far a site's surfel is from what it stands for, and from the mesh. */
 #include "lod/clusters/cluster_sites.h"
 
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 
 enum { N_ENDS = 20 };

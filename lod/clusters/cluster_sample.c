@@ -1,7 +1,6 @@
 /* From a cluster to surfels: sites, closer ones where their ellipses stray from the surface, and colours. */
 #include "lod/clusters/cluster_sample.h"
 
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "lod/clusters/cluster_sites.h"
 

@@ -1,6 +1,5 @@
 #include "lod/clusters/cluster_seen.h"
 
-#include "core/base/base.h"
 #include "core/base/color.h"
 #include "core/base/vectors.h"
 

@@ -3,8 +3,6 @@
 #ifndef CONIC_CLUSTER_SEEN_H
 #define CONIC_CLUSTER_SEEN_H
 
-#include <math.h>
-
 #include "lod/clusters/cluster.h"
 
 /* From black to white; and what is just visible. */

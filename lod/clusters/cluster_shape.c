@@ -1,6 +1,5 @@
 /* A plane for what each site stands for, and an ellipse that covers it. */
 
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "lod/clusters/cluster_sites.h"
 

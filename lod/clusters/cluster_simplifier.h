@@ -3,10 +3,7 @@
 #ifndef CONIC_CLUSTER_SIMPLIFIER_H
 #define CONIC_CLUSTER_SIMPLIFIER_H
 
-#include "core/base/base.h"
 #include "core/base/heap.h"
-#include "core/base/vectors.h"
-#include "lod/clusters/cluster_seen.h"
 #include "lod/clusters/cluster_simplify.h"
 #include "lod/mesh/quadric.h"
 

@@ -1,6 +1,5 @@
 #include "lod/clusters/cluster_simplify.h"
 
-#include "core/base/base.h"
 #include "lod/clusters/cluster_simplifier.h"
 
 conic_status conic_simplifier_create(conic_context *context, const conic_clustered_mesh *mesh,

@@ -2,7 +2,6 @@
 #ifndef CONIC_CLUSTER_SIMPLIFY_H
 #define CONIC_CLUSTER_SIMPLIFY_H
 
-#include "lod/clusters/cluster.h"
 #include "lod/clusters/cluster_seen.h"
 #include "lod/mesh/face_tree.h"
 

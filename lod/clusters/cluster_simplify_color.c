@@ -1,7 +1,5 @@
 /* What simplifying does to colours. */
 
-#include "core/base/base.h"
-#include "core/base/vectors.h"
 #include "lod/clusters/cluster_simplifier.h"
 
 void conic_simplifier_note_change(conic_simplifier *s, uint32_t cluster, const conic_simplifier_point *point,

@@ -1,8 +1,6 @@
 /* Triangles of what is one, fitted to the mesh: the places of their vertices, and the normals of their corners. Both by
  * least squares over the middles of the mesh's faces, each weighted by its area, at what is nearest to it. */
 
-#include "core/base/base.h"
-#include "core/base/vectors.h"
 #include "lod/clusters/cluster_simplifier.h"
 
 /* --- values at corners, by least squares --- */

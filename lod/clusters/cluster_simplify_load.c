@@ -1,7 +1,5 @@
 /* The region as simplifying has it. */
 
-#include "core/base/base.h"
-#include "core/base/vectors.h"
 #include "lod/clusters/cluster_simplifier.h"
 
 /* How much more a border's planes weigh than the faces' (HQP §3.2.4). */

@@ -1,10 +1,7 @@
 /* How far a cluster and its simpler triangles are from each other. What is found depends on no other cluster's, so that
  * clusters may be measured at the same time. */
-#include <math.h>
 
-#include "core/base/vectors.h"
 #include "lod/clusters/cluster_simplifier.h"
-#include "lod/mesh/mesh.h"
 
 /* The least cosine between a face and what stands for it where it is fitted. */
 static const double least_alike = 0.5;

@@ -1,6 +1,5 @@
 /* Levels of what simplifying has left: each cluster's triangles and their borders. */
 
-#include "core/base/base.h"
 #include "lod/clusters/cluster_simplifier.h"
 
 /* --- borders --- */

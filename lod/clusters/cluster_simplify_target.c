@@ -1,7 +1,5 @@
 /* What a vertex is best drawn onto, of its neighbours that it may be drawn onto. */
 
-#include "core/base/base.h"
-#include "core/base/vectors.h"
 #include "lod/clusters/cluster_simplifier.h"
 
 /* The least cosine by which a face may turn. */

@@ -1,10 +1,8 @@
 #include "lod/clusters/cluster_sites.h"
 
-#include "core/base/base.h"
 #include "core/base/color.h"
 #include "core/base/random.h"
 #include "core/base/vectors.h"
-#include "lod/clusters/cluster_seen.h"
 
 /* A step of the lattices, in spacings: fine enough that what a site stands for is round. */
 static const double lattice_step = 0.9;

@@ -2,7 +2,6 @@
 #ifndef CONIC_CLUSTER_SITES_H
 #define CONIC_CLUSTER_SITES_H
 
-#include "core/base/base.h"
 #include "core/base/radix.h"
 #include "core/splats/ellipse.h"
 #include "lod/clusters/cluster_sample.h"

@@ -1,9 +1,6 @@
 /* Places of a cluster, found by where they are. Each has the nearest of the sites that were put so far. */
 #include "lod/clusters/cluster_sites.h"
 
-#include "core/base/base.h"
-#include "core/base/radix.h"
-
 /* The side of a depth's cells, in spacings. */
 static const double cell_side = 1.4;
 

@@ -1,6 +1,5 @@
 /* COPC (cloud-optimised point clouds): a LAZ 1.4 whose chunks are an octree's nodes, with pages of 32 bytes a node. */
 
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "lod/hierarchies/hierarchy.h"
 

@@ -1,6 +1,5 @@
 /* EPT (Entwine point tiles): ept.json, a file of JSON a page of the hierarchy, and a file a node. */
 
-#include "core/base/base.h"
 #include "core/files/zstd.h"
 #include "lod/hierarchies/hierarchy.h"
 

@@ -1,6 +1,5 @@
 #include "lod/hierarchies/hierarchy.h"
 
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"

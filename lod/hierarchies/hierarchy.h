@@ -8,7 +8,6 @@
 #ifndef CONIC_HIERARCHY_H
 #define CONIC_HIERARCHY_H
 
-#include "core/base/base.h"
 #include "core/files/json_read.h"
 #include "core/pictures/georeference.h"
 #include "lod/ranges/ranges.h"

@@ -1,7 +1,6 @@
 /* LAZ within hierarchies: a chunk, or a whole file, of points. */
 #include "lod/hierarchies/hierarchy.h"
 
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/laz/laz.h"
 

@@ -1,6 +1,5 @@
 #include "lod/hierarchies/node_shape.h"
 
-#include "core/base/base.h"
 #include "core/base/eigen.h"
 #include "core/base/rank.h"
 #include "core/base/vectors.h"

@@ -1,6 +1,5 @@
 /* Potree 2: metadata.json, the hierarchy's pages in hierarchy.bin, and the points in octree.bin. */
 
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/files/unbrotli.h"
 #include "lod/hierarchies/hierarchy.h"

@@ -2,7 +2,6 @@
  * All lengths are in units of the longest side of the mesh's box, about its middle. */
 #include "lod/mesh/mesh_clusters.h"
 
-#include "core/base/base.h"
 #include "core/base/eigen.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"

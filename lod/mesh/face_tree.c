@@ -1,10 +1,8 @@
 #include "lod/mesh/face_tree.h"
 
-#include "core/base/base.h"
 #include "core/base/radix.h"
 #include "core/base/random.h"
 #include "core/base/vectors.h"
-#include "lod/mesh/mesh.h"
 
 enum { LEAF_FACES = 2, CODE_BITS = 10 };
 

@@ -1,7 +1,6 @@
 /* Which faces of a mesh lie side by side, and meshes with one index a corner. */
 #include "lod/mesh/mesh.h"
 
-#include "core/base/base.h"
 #include "core/base/radix.h"
 #include "core/base/random.h"
 #include "core/base/vectors.h"

@@ -1,6 +1,5 @@
 #include "lod/mesh/mesh_cells.h"
 
-#include "core/base/base.h"
 #include "core/base/radix.h"
 #include "core/files/disk.h"
 #include "core/files/pile.h"

@@ -5,7 +5,6 @@
  * becomes rounder. So the joints that are left at the end are asked again, until none is below the limit. */
 #include "lod/mesh/mesh_clusters.h"
 
-#include "core/base/base.h"
 #include "core/base/heap.h"
 
 static const uint32_t none = UINT32_MAX;

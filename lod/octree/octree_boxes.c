@@ -1,6 +1,5 @@
 /* How an octree parts its points, as a picture (after Confetti's Fig. 17). */
 
-#include "core/base/base.h"
 #include "core/coloring/color_ramp.h"
 #include "core/image/box_lines.h"
 #include "core/image/image_common.h"

@@ -1,9 +1,7 @@
 /* The least error that so many splats can give, and the view of an octree. */
 
-#include "core/base/base.h"
 #include "core/image/viewpoint.h"
 #include "lod/octree/octree_loops.h"
-#include "lod/octree/octree_view.h"
 #include "lod/planner/plan.h"
 
 typedef struct octree_opening {

@@ -1,8 +1,5 @@
-#include "core/base/base.h"
 #include "core/splats/columns.h"
-#include "lod/octree/octree_code.h"
 #include "lod/octree/octree_fit.h"
-#include "lod/octree/octree_nodes.h"
 #include "raster/project/projected.h"
 
 /* Squares of what is farther out overflow a float. */

@@ -1,6 +1,5 @@
 /* Whether an octree keeps what its numbers promise. */
 
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "lod/octree/octree_nodes.h"
 

@@ -3,8 +3,6 @@
 #ifndef CONIC_OCTREE_CODE_H
 #define CONIC_OCTREE_CODE_H
 
-#include <stdint.h>
-
 #include "conic/splats.h"
 
 enum { CONIC_NODE_BYTES = 19, CONIC_NODE_FANOUT = 8 };

@@ -1,7 +1,5 @@
 #include "lod/octree/octree_cover.h"
 
-#include <math.h>
-
 #include "core/base/trigonometry.h"
 
 void conic_disc_samples_init(conic_disc_samples *samples) {

@@ -2,7 +2,6 @@
  * among the leaves, its own and those around, or, for large nodes, among small nodes and their errors. So nodes are
  * taken in classes by their size. What a class looks at belongs to the classes below. */
 
-#include "core/base/base.h"
 #include "core/base/team_runs.h"
 #include "core/base/vectors.h"
 #include "lod/octree/octree_loops.h"

@@ -1,8 +1,6 @@
 /* .cot files: docs/reference/format-cot.md. */
 
-#include "core/base/base.h"
 #include "core/files/file_body.h"
-#include "lod/octree/octree_code.h"
 #include "lod/octree/octree_nodes.h"
 
 enum { VERSION = 1 };

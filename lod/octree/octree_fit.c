@@ -1,6 +1,5 @@
 #include "lod/octree/octree_fit.h"
 
-#include "core/base/base.h"
 #include "core/base/eigen.h"
 #include "core/base/team_runs.h"
 #include "core/base/vectors.h"

@@ -2,7 +2,6 @@
 #ifndef CONIC_OCTREE_FIT_H
 #define CONIC_OCTREE_FIT_H
 
-#include "conic/splats.h"
 #include "core/splats/ellipse.h"
 #include "lod/octree/octree_nodes.h"
 

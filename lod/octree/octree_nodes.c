@@ -1,6 +1,5 @@
 #include "lod/octree/octree_nodes.h"
 
-#include "core/base/base.h"
 #include "core/base/rank.h"
 #include "core/base/vectors.h"
 #include "core/splats/near.h"

@@ -3,7 +3,6 @@
 #define CONIC_OCTREE_NODES_H
 
 #include "conic/octree.h"
-#include "core/base/base.h"
 #include "core/files/mapping.h"
 #include "lod/octree/octree_code.h"
 

@@ -1,4 +1,3 @@
-#include "core/base/base.h"
 #include "core/base/kept_memory.h"
 #include "core/image/view_arguments.h"
 #include "lod/octree/octree_loops.h"

@@ -1,9 +1,6 @@
 /* The structure of a point-octree: space split at the mean of each node's points (Confetti §3.2). */
 #include "lod/octree/octree_nodes.h"
 
-#include "core/base/base.h"
-#include "lod/octree/octree_code.h"
-
 /* Larger nodes are split one after the other, the subtrees below them side by side. */
 static const size_t task_points = 32768;
 

@@ -3,7 +3,6 @@
 #ifndef CONIC_PLAN_H
 #define CONIC_PLAN_H
 
-#include <stddef.h>
 #include <stdint.h>
 
 #include "conic/context.h"

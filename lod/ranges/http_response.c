@@ -1,6 +1,5 @@
 #include "lod/ranges/http_response.h"
 
-#include <string.h>
 #include <strings.h>
 
 enum { MOST_HEADER_BYTES = 1 << 16 };

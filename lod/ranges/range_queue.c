@@ -1,5 +1,4 @@
 /* Ranges that wait, the first by priority first. */
-#include "core/base/base.h"
 #include "lod/ranges/ranges_backend.h"
 
 /* By priority, then by place in the file, so that neighbours follow each other. */

@@ -1,6 +1,5 @@
 #include "lod/ranges/ranges.h"
 
-#include "core/base/base.h"
 #include "core/files/guard.h"
 #include "lod/ranges/ranges_backend.h"
 

@@ -1,6 +1,5 @@
 /* Ranges of a file in this machine: a memory map, whose pages are given back as they were read. */
 
-#include "core/base/base.h"
 #include "core/files/disk.h"
 #include "core/files/mapping.h"
 #include "lod/ranges/ranges_backend.h"

@@ -11,7 +11,6 @@
  *
  * Others may add up in any order, which errs no more than this one: of n weights, the k-th has n − k roundings by sums
  * here and two by each T before it, and any order rounds it at most n − 1 times. */
-#include <string.h>
 
 #include "oracle/gaussians/oracle_uncertain.h"
 

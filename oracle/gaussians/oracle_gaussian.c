@@ -1,8 +1,6 @@
 /* Gaussians for the oracle: what each profile makes of one, and how much a place of the screen sees of it. */
 #include "oracle/gaussians/oracle_gaussian.h"
 
-#include <string.h>
-
 #include "oracle/oracle_math.h"
 
 #define LEAST_ALPHA (1.0 / 255.0)

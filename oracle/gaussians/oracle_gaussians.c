@@ -1,6 +1,5 @@
 /* A picture of Gaussians by the oracle: every pixel by itself, over all of them. */
 
-#include "core/base/base.h"
 #include "core/image/view_arguments.h"
 #include "oracle/gaussians/oracle_gaussian.h"
 #include "oracle/oracle_math.h"

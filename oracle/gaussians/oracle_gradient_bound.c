@@ -7,8 +7,6 @@
  *
  * Decisions in doubt: each is followed the other way by itself, and what that changes is added up. */
 
-#include "core/base/base.h"
-#include "oracle/gaussians/oracle_bounded.h"
 #include "oracle/gaussians/oracle_gradient_job.h"
 
 #define UNIT ORACLE_FLOAT_UNIT

@@ -1,7 +1,6 @@
 /* From what a Gaussian is at the pixels back to its parameters and the camera's: the set-up of oracle_gaussian.c, step
  * by step in reverse. Of a clamp the derivative is that of the side it is on, and at its border that of the inside, as
  * automatic differentiation has it. */
-#include <string.h>
 
 #include "oracle/gaussians/oracle_gradient.h"
 #include "oracle/oracle_math.h"

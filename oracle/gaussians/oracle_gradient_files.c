@@ -1,8 +1,6 @@
 /* Weights from pictures and NumPy arrays, and gradients into .ply. */
 
-#include "conic/image.h"
 #include "conic/version.h"
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/files/file.h"
 #include "core/files/mapping.h"

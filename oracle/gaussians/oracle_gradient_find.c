@@ -1,9 +1,6 @@
 /* The derivative as it is asked for and handed out. */
 
-#include "core/base/base.h"
-#include "oracle/gaussians/oracle_cells.h"
 #include "oracle/gaussians/oracle_gradient_job.h"
-#include "oracle/oracle_math.h"
 
 enum { CHAIN_RUN = 1024 };
 

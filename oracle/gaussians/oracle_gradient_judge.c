@@ -1,10 +1,6 @@
 /* Somebody's gradient held against the one in double precision, within what floats and decisions in doubt may do. */
 #include "oracle/gaussians/oracle_gradient_job.h"
 
-#include "core/base/base.h"
-#include "oracle/gaussians/oracle_bounded.h"
-#include "oracle/gaussians/oracle_uncertain.h"
-
 enum { RUN = 256, N_FIXED = 11, MOST_NUMBERS = N_FIXED + 3 * (CONIC_MAX_SH_DEGREE + 1) * (CONIC_MAX_SH_DEGREE + 1) };
 
 /* What the set-up in float, and the chain back, are off by, in units of the sum of their terms' sizes. Roundings of 0.4

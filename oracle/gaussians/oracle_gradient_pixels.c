@@ -1,6 +1,5 @@
 /* A pixel's part of the derivative. With v the derivative by a weight, and B that by the light from behind, which is
  * α·v + (1 − α)·B one Gaussian further to the front, dL/dα = T·(v − B): nothing is divided by 1 − α. */
-#include <string.h>
 
 #include "oracle/gaussians/oracle_gradient.h"
 #include "oracle/oracle_math.h"

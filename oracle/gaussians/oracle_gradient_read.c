@@ -1,11 +1,9 @@
 /* Gradients of other programs: .ply with the properties of scenes, and .npz. */
 
-#include "core/base/base.h"
 #include "core/files/file.h"
 #include "core/files/mapping.h"
 #include "core/files/numpy_array.h"
 #include "core/files/zip.h"
-#include "core/formats/ply_header.h"
 #include "core/formats/ply_source.h"
 #include "oracle/gaussians/oracle_gradient_job.h"
 

@@ -1,9 +1,7 @@
 /* How far off the set-up of a program of floats may be in its derivative: the chain of oracle_gradient_chain.c once
  * more, with every term taken without regard to its sign. What any order of these products and sums errs by is at most
  * the number of roundings of a term, times the unit, times this sum. */
-#include <string.h>
 
-#include "oracle/gaussians/oracle_bounded.h"
 #include "oracle/gaussians/oracle_gradient_job.h"
 
 void conic_oracle_row_sizes(const oracle_gaussian_view *view, const oracle_gaussian *g, row_sizes *s) {

@@ -1,6 +1,5 @@
 /* A picture of a Gaussian scene held against what floats may make of it. */
 
-#include "core/base/base.h"
 #include "oracle/gaussians/oracle_cells.h"
 #include "oracle/oracle_evidence.h"
 

@@ -1,9 +1,7 @@
 /* Why a pixel is as it is: the Gaussians that have it in their reach, in their order. */
 
-#include "core/base/base.h"
 #include "core/image/view_arguments.h"
 #include "oracle/gaussians/oracle_cells.h"
-#include "oracle/gaussians/oracle_uncertain.h"
 
 conic_status conic_oracle_enter(conic_context *context, const conic_gaussians *gaussians, const conic_camera *camera,
                                 const conic_gaussian_options *options, const conic_float_model *model, int samples,

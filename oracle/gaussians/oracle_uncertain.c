@@ -5,7 +5,6 @@
  * polynomials. However one is evaluated, it errs by at most the number of a term's roundings, times the unit, times the
  * sum of its terms' absolute values. */
 #include <float.h>
-#include <string.h>
 
 #include "oracle/gaussians/oracle_uncertain.h"
 

@@ -1,5 +1,4 @@
 /* What triangles do to a pixel. */
-#include <string.h>
 
 #include "raster/explain/pixel_contributions.h"
 #include "raster/triangles/triangle_tile.h"

@@ -1,7 +1,5 @@
 #include "raster/frame/drawing.h"
 
-#include <string.h>
-
 #include "raster/loops/raster_loops.h"
 #include "raster/view/method.h"
 

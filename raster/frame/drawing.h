@@ -2,7 +2,6 @@
 #ifndef CONIC_DRAWING_H
 #define CONIC_DRAWING_H
 
-#include "conic/triangles.h"
 #include "core/splats/columns.h"
 #include "raster/triangles/triangle_frame.h"
 

@@ -1,5 +1,3 @@
-#include "raster/view/part.h"
-
 #include "core/base/base.h"
 #include "core/image/view_arguments.h"
 #include "raster/frame/raster_frame.h"

@@ -3,14 +3,9 @@
 #ifndef CONIC_RASTER_FRAME_H
 #define CONIC_RASTER_FRAME_H
 
-#include <stdatomic.h>
-
-#include "core/base/kept_memory.h"
 #include "raster/frame/backend.h"
 #include "raster/frame/drawing.h"
 #include "raster/frame/tile.h"
-#include "raster/project/projected.h"
-#include "raster/tiles/bins.h"
 #include "raster/view/part.h"
 
 struct conic_renderer {

@@ -1,5 +1,3 @@
-#include "conic/render.h"
-
 #include "core/base/base.h"
 #include "core/splats/near.h"
 #include "raster/frame/raster_frame.h"

@@ -1,8 +1,6 @@
 /* Supersampling: the picture drawn N times as wide and as high, and every N × N of its pixels made one. */
 
 #include "raster/frame/samples.h"
-#include "conic/render.h"
-#include "core/base/base.h"
 #include "core/image/image_common.h"
 #include "core/image/view_arguments.h"
 #include "raster/frame/statistics.h"

@@ -4,7 +4,6 @@
 #include "core/image/view_arguments.h"
 #include "raster/frame/drawing.h"
 #include "raster/loops/raster_loops.h"
-#include "raster/view/view.h"
 
 /* Splats that are projected at a time: their records stay in a core's cache. */
 enum { CHUNK = 2048, PLACES = CHUNK + CONIC_PROJECT_SLACK };

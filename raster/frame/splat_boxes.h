@@ -2,7 +2,6 @@
 #ifndef CONIC_SPLAT_BOXES_H
 #define CONIC_SPLAT_BOXES_H
 
-#include "conic/render.h"
 #include "raster/project/projected.h"
 
 /* Projects the splats, which have no clip lines, as the picture with these planes does: boxes[i] holds the pixels that

@@ -1,7 +1,5 @@
 #include "raster/frame/tile.h"
 
-#include <math.h>
-
 #include "raster/view/ticks.h"
 
 /* What is known of a tile's blocks from some of its splats: no pixel's threshold will be below these. */

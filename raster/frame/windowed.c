@@ -1,6 +1,5 @@
 #include "raster/frame/raster_frame.h"
 
-#include "raster/frame/drawing.h"
 #include "raster/project/clip_lines.h"
 
 /* Cuts a span off at low and high, and counts it from low on. */

@@ -1,5 +1,4 @@
 /* The plain C reference of the loops: a pixel at a time, by the definitions of coverage.h. */
-#include <string.h>
 
 #include "core/lanes/stream.h"
 #include "raster/loops/raster_loops.h"

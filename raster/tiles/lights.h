@@ -2,8 +2,6 @@
 #ifndef CONIC_LIGHTS_H
 #define CONIC_LIGHTS_H
 
-#include "conic/camera.h"
-#include "conic/context.h"
 #include "raster/tiles/finish.h"
 
 /* Errors: ARGUMENT (a light without a direction, a colour out of range …). */

@@ -1,7 +1,5 @@
 #include "raster/tiles/finish.h"
 
-#include <string.h>
-
 void conic_tile_rays_init(const conic_view *view, int x_begin, int y_begin, conic_tile_rays *rays) {
   rays->x_begin = x_begin;
   rays->y_begin = y_begin;

@@ -1,11 +1,8 @@
 /* A drawing with its opacities: the picture as it is drawn without, a mask of the pixels whose front surface lets light
  * through, and these again, surface by surface. */
-#include "conic/transparency.h"
 
-#include "core/base/base.h"
 #include "core/image/image_common.h"
 #include "core/image/view_arguments.h"
-#include "raster/frame/drawing.h"
 #include "raster/frame/samples.h"
 #include "raster/frame/statistics.h"
 #include "raster/tiles/lights.h"

@@ -2,7 +2,6 @@
  *
  * Each edge is cut by itself, from its ends in an order of their own, so that the triangles on its two sides get the
  * same new corner, bit for bit. */
-#include <string.h>
 
 #include "raster/triangles/triangle_frame.h"
 

@@ -3,7 +3,6 @@
 #ifndef CONIC_PART_H
 #define CONIC_PART_H
 
-#include "conic/render.h"
 #include "conic/triangles.h"
 
 /* Pixels from begin to before end. */

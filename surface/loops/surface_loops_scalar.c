@@ -1,5 +1,4 @@
 /* The loops in plain C: the reference. */
-#include "surface/loops/surface_loops.h"
 #include "surface/loops/weight.h"
 
 typedef double partial[CONIC_NEAR_LANES];

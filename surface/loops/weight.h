@@ -2,7 +2,6 @@
 #ifndef CONIC_WEIGHT_H
 #define CONIC_WEIGHT_H
 
-#include "core/base/base.h"
 #include "surface/loops/surface_loops.h"
 
 /* log₂ e; 1.5·2⁵², which rounds a sum to an integer; ln 2 in two parts, so that k times the first is exact. */

@@ -2,8 +2,6 @@
 #ifndef CONIC_PATCH_H
 #define CONIC_PATCH_H
 
-#include "conic/splats.h"
-#include "core/base/base.h"
 #include "surface/mls_surface.h"
 
 /* Where a patch ends before its disc does, at creases and borders: a line keeps a·s + b·t + c - k·(d·s + e·t)² ≥ 0,

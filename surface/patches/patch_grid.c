@@ -1,6 +1,5 @@
 /* A patch on a grid, by forward differences (PSS §6.2). */
 
-#include "core/base/base.h"
 #include "surface/loops/weight.h"
 #include "surface/patches/patch.h"
 

@@ -1,7 +1,6 @@
 /* The corners of a mesh by their places, and by the sides of its creases there. */
 
 #include "surface/patches/patch_mesh.h"
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/estimate/neighbourhood.h"
 

@@ -3,7 +3,6 @@
 #define CONIC_PATCH_MESH_H
 
 #include "conic/triangles.h"
-#include "surface/mls_surface.h"
 #include "surface/patches/patch.h"
 
 /* The corners of triangles by the slots of their places. A *side* of a vertex is what has one normal there: all of it

@@ -1,7 +1,6 @@
 /* Patches through a mesh's vertices: about each side of a vertex, the polynomial through it and across its normal that
  * comes nearest to the vertices around it and to their normals, and where it ends. */
 
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/splats/ellipse.h"
 #include "surface/patches/patch_mesh.h"

@@ -1,8 +1,6 @@
 /* Lays patches: a polynomial about every point, with the radius up to which it can be trusted. */
 #include "surface/patches/patch_set.h"
 
-#include "core/base/base.h"
-#include "core/base/vectors.h"
 #include "core/splats/columns.h"
 
 /* Unit vectors, 45° apart. */

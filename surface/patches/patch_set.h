@@ -2,13 +2,8 @@
 #ifndef CONIC_PATCH_SET_H
 #define CONIC_PATCH_SET_H
 
-#include <math.h>
-
-#include "conic/camera.h"
 #include "conic/patches.h"
-#include "conic/render.h"
 #include "core/image/viewpoint.h"
-#include "surface/patches/patch.h"
 #include "surface/patches/patch_mesh.h"
 
 /* A camera for choosing patches: which spheres are in sight, and lengths on the screen. */

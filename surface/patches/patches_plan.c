@@ -1,6 +1,5 @@
 /* Decides, down the tree, which slots a picture draws, and how finely. */
 
-#include "core/base/base.h"
 #include "surface/patches/patch_set.h"
 
 const int conic_grid_sizes[CONIC_N_GRIDS] = {3, 4, 6, 8, 12, 16, 24, 32, 48, 64};

@@ -1,7 +1,6 @@
 /* The samples of a picture, in the order of the points. Grids of the last picture are taken over if they are the same:
  * samples do not depend on the camera. */
 
-#include "core/base/base.h"
 #include "core/image/view_arguments.h"
 #include "core/splats/clip.h"
 #include "surface/patches/patch_set.h"

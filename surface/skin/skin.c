@@ -1,6 +1,5 @@
 #include "surface/skin/skin.h"
 
-#include "core/base/base.h"
 #include "core/base/radix.h"
 #include "core/base/vectors.h"
 #include "surface/skin/skin_search.h"

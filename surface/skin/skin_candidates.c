@@ -1,6 +1,5 @@
 /* The triangles that each splat makes with its neighbours in its own plane (Delaunay's there). */
 
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "surface/fan.h"
 #include "surface/skin/skin_search.h"

@@ -1,6 +1,5 @@
 /* Chooses, among the candidate triangles, those that fit each other. */
 
-#include "core/base/base.h"
 #include "core/base/radix.h"
 #include "core/base/vectors.h"
 #include "core/splats/ellipse.h"

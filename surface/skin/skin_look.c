@@ -1,6 +1,5 @@
 /* What the picture shows at a splat: all splats over it blend, and the picture shows their mean. */
 
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "surface/skin/skin_search.h"
 

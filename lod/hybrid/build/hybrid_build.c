@@ -1,10 +1,7 @@
 /* From a mesh to a hybrid model: one index a corner, neighbours, clusters, and ways to draw each. */
 
 #include "lod/hybrid/build/hybrid_build.h"
-#include "core/base/base.h"
 #include "core/splats/columns.h"
-#include "lod/hybrid/model/hybrid_model.h"
-#include "lod/mesh/mesh.h"
 
 CONIC_DEFINE_OPTIONS(conic_hybrid_options, .phase1 = 0.12, .phase2 = 0.4, .density = 2.0, .most_error = 0.5,
                      .cutoff = 1.5f)

@@ -2,7 +2,6 @@
 #ifndef CONIC_HYBRID_BUILD_H
 #define CONIC_HYBRID_BUILD_H
 
-#include "conic/hybrid.h"
 #include "lod/clusters/cluster_sample.h"
 #include "lod/clusters/cluster_simplify.h"
 #include "lod/hybrid/model/hybrid_model.h"

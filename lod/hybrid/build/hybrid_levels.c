@@ -1,9 +1,7 @@
 /* All ways to draw one cluster. */
 #include "lod/hybrid/build/hybrid_build.h"
 
-#include "core/base/base.h"
 #include "core/base/radix.h"
-#include "core/base/vectors.h"
 
 void conic_cluster_ways_release(conic_context *context, conic_cluster_ways *ways) {
   conic_cluster_levels_release(context, &ways->triangles);

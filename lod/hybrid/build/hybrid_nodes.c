@@ -1,12 +1,9 @@
 /* The hierarchy over the clusters, and ways to draw many of them as one. */
 #include "lod/hybrid/build/hybrid_build.h"
 
-#include "core/base/base.h"
 #include "core/base/random.h"
 #include "core/base/trigonometry.h"
-#include "core/base/vectors.h"
 #include "lod/clusters/cluster_sites.h"
-#include "lod/hybrid/model/hybrid_model.h"
 
 /* The most surfels of a level, above which its node's children do as well. */
 enum { MOST_SITES = 64 };

@@ -1,7 +1,6 @@
 /* From the ways to draw each cluster to a model, all in one piece of memory. */
 #include "lod/hybrid/build/hybrid_build.h"
 
-#include "core/base/base.h"
 #include "core/base/color.h"
 #include "core/image/texture_levels.h"
 #include "lod/hybrid/model/hybrid_chunks.h"

@@ -1,7 +1,5 @@
 /* From splats to a hybrid model: triangles where they lie as a surface does, and all others as what they are. */
 
-#include "core/base/base.h"
-#include "core/base/vectors.h"
 #include "core/splats/columns.h"
 #include "lod/hybrid/build/hybrid_build.h"
 #include "surface/skin/skin.h"

@@ -1,9 +1,7 @@
 /* Simpler triangles for all clusters, in regions. Each region goes on to its next stage on one thread; then all threads
  * measure the clusters of all regions. */
 
-#include "core/base/base.h"
 #include "lod/hybrid/build/hybrid_build.h"
-#include "lod/hybrid/model/hybrid_model.h"
 
 /* A region has no more faces than this, or but one cluster. What lies between regions stays, so they are large. */
 enum { MOST_FACES = 250000 };

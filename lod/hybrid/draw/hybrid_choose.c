@@ -1,6 +1,5 @@
 #include "lod/hybrid/draw/hybrid_choose.h"
 
-#include "core/base/base.h"
 #include "lod/hybrid/draw/hybrid_selecting.h"
 #include "lod/planner/plan.h"
 

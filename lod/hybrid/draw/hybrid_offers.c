@@ -1,8 +1,6 @@
 #include "lod/hybrid/draw/hybrid_offers.h"
 
-#include "core/base/base.h"
 #include "core/base/trigonometry.h"
-#include "core/base/vectors.h"
 #include "core/splats/ellipse.h"
 
 /* What drawing takes, in nanoseconds of one core with what it takes to choose and to copy: a triangle, one more that

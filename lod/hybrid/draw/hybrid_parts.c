@@ -1,7 +1,5 @@
 /* What the chosen levels of a hybrid model are drawn of, copied into one set of splats and one of triangles. */
 
-#include "core/base/base.h"
-#include "lod/hybrid/draw/hybrid_offers.h"
 #include "lod/hybrid/draw/hybrid_selecting.h"
 
 enum { SPLAT_ARRAYS = 12, VERTEX_ARRAYS = 11, TRIANGLE_ARRAYS = 5, CHOICES_A_TASK = 16 };

@@ -1,13 +1,8 @@
 /* What of a hybrid model is drawn in one picture. */
 
-#include "core/base/base.h"
-#include "core/base/kept_memory.h"
 #include "core/image/view_arguments.h"
 #include "lod/clusters/cluster_seen.h"
-#include "lod/hybrid/draw/hybrid_choose.h"
-#include "lod/hybrid/draw/hybrid_offers.h"
 #include "lod/hybrid/draw/hybrid_selecting.h"
-#include "lod/hybrid/model/hybrid_chunks.h"
 #include "lod/hybrid/model/hybrid_store.h"
 
 CONIC_DEFINE_OPTIONS(conic_hybrid_view, .only_kind = -1, .color_error = CONIC_JUST_VISIBLE)

@@ -1,7 +1,5 @@
 /* Whether a hybrid model keeps what its numbers promise. */
 
-#include "core/base/base.h"
-#include "core/base/vectors.h"
 #include "lod/hybrid/model/hybrid_chunks.h"
 
 /* What floats lose between the finding of a bound and its use. */

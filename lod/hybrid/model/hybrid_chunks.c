@@ -1,7 +1,6 @@
 #include "lod/hybrid/model/hybrid_chunks.h"
 
 #include "core/base/byte_order.h"
-#include "core/base/memory.h"
 #include "core/base/radix.h"
 #include "lod/hybrid/model/hybrid_store.h"
 

@@ -1,6 +1,5 @@
 /* .chy files: docs/reference/format-chy.md. */
 
-#include "core/base/base.h"
 #include "core/files/file.h"
 #include "lod/hybrid/model/hybrid_chunks.h"
 #include "lod/hybrid/model/hybrid_layout.h"

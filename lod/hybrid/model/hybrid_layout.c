@@ -1,6 +1,5 @@
 #include "lod/hybrid/model/hybrid_layout.h"
 
-#include "core/base/base.h"
 #include "core/base/color.h"
 #include "core/image/texture_levels.h"
 

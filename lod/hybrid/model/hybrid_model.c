@@ -1,6 +1,5 @@
 #include "lod/hybrid/model/hybrid_model.h"
 
-#include "core/base/base.h"
 #include "core/splats/near.h"
 #include "lod/hybrid/model/hybrid_layout.h"
 #include "lod/hybrid/model/hybrid_store.h"

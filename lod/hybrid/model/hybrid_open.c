@@ -1,6 +1,5 @@
 /* Opening a hybrid model from wherever it lies: header and arrays. Pictures read the chunks that they show. */
 
-#include "core/base/base.h"
 #include "lod/hybrid/model/hybrid_chunks.h"
 #include "lod/hybrid/model/hybrid_layout.h"
 #include "lod/hybrid/model/hybrid_store.h"

@@ -1,11 +1,8 @@
 /* Models that are put together of others. Their chunks lie in a file without a name until they are written. */
 #include "lod/hybrid/model/hybrid_store.h"
 
-#include "core/base/base.h"
-#include "core/base/vectors.h"
 #include "core/files/disk.h"
 #include "lod/hybrid/model/hybrid_chunks.h"
-#include "lod/hybrid/model/hybrid_model.h"
 
 /* Steps between black and white. */
 static const float all_steps = 100.0f;

@@ -1,6 +1,5 @@
 #include "lod/hybrid/model/hybrid_store.h"
 
-#include "core/base/base.h"
 #include "lod/hybrid/model/hybrid_chunks.h"
 
 #define CONIC_NO_CHUNK UINT32_MAX

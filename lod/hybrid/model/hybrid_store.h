@@ -2,7 +2,6 @@
 #ifndef CONIC_HYBRID_STORE_H
 #define CONIC_HYBRID_STORE_H
 
-#include "conic/layers_draw.h"
 #include "core/files/pile.h"
 #include "lod/hybrid/model/hybrid_model.h"
 #include "lod/ranges/ranges.h"

@@ -1,5 +1,4 @@
 /* The hierarchy over the clusters. */
-#include "core/base/base.h"
 #include "lod/hybrid/model/hybrid_model.h"
 
 /* Halves like these need no more levels of nodes than they must. */

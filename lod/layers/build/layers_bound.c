@@ -1,11 +1,8 @@
 /* The bounds of a node: what its samples cover, where they lie, and which way they face. */
-#include <stdatomic.h>
 
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "lod/layers/build/layers_node.h"
 #include "lod/layers/format/layers_axes.h"
-#include "lod/layers/format/layers_code.h"
 #include "lod/layers/format/layers_key.h"
 
 enum { SOME_KEYS = 512, N_PROBES = 32, N_NEAREST = 8, LEAST_TO_TELL = 32 };

@@ -1,4 +1,3 @@
-#include "core/base/base.h"
 #include "lod/layers/build/layers_parts.h"
 
 /* So many bits of the keys split the samples at a time, fewer where there is little memory for open blocks. */

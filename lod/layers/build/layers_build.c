@@ -1,8 +1,6 @@
 /* Building a layered point cloud in bounded memory: samples are put aside as they come, sorted roughly by where they
  * are, grown into a tree piece by piece, and written (docs/reference/layers.md). */
 
-#include "conic/layers.h"
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/files/file.h"
 #include "core/splats/columns.h"

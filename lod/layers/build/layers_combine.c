@@ -2,7 +2,6 @@
  * all has, their box, how many there are, and a few of them. It is what one process would know that had taken in all.
  */
 
-#include "core/base/base.h"
 #include "lod/layers/build/layers_raws.h"
 
 /* What the first batch of all has. */

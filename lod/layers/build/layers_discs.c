@@ -1,5 +1,4 @@
 /* How far full resolution is from the discs that stand for it, found by holding discs against discs. */
-#include <math.h>
 
 #include "lod/layers/build/layers_thin.h"
 

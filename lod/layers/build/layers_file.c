@@ -1,10 +1,8 @@
 /* From a grown tree to a file. */
 #include <unistd.h>
 
-#include "core/base/base.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
-#include "core/files/mapping.h"
 #include "lod/layers/build/layers_grow.h"
 
 /* --- the entries in the order of the file: by level, then by key --- */

@@ -1,10 +1,5 @@
 #include "lod/layers/build/layers_grow.h"
 
-#include <stdatomic.h>
-
-#include "core/base/base.h"
-#include "lod/layers/format/layers_axes.h"
-
 /* A group holds no more samples than this, so that progress is seen, and no more than the fraction of all of them that
  * keeps all threads busy. */
 enum { MOST_IN_GROUP = 1 << 19, GROUPS_A_THREAD = 8 };

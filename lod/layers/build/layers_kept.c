@@ -1,6 +1,5 @@
 #include "lod/layers/build/layers_kept.h"
 
-#include "core/base/base.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "lod/layers/build/layers_node.h"

@@ -8,7 +8,6 @@
 #ifndef CONIC_LAYERS_KEPT_H
 #define CONIC_LAYERS_KEPT_H
 
-#include "core/base/team.h"
 #include "core/files/finished.h"
 #include "lod/layers/build/layers_team.h"
 

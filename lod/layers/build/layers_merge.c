@@ -1,6 +1,5 @@
 /* From the parts that several processes have grown to one tree. */
 
-#include "core/base/base.h"
 #include "lod/layers/build/layers_grow.h"
 
 /* Entries that are sent at a time. */

@@ -1,8 +1,5 @@
 #include "lod/layers/build/layers_node.h"
 
-#include "core/base/base.h"
-#include "core/files/mapping.h"
-
 /* Clouds are written so many bytes at a time. */
 enum { PACKED_BYTES = 1 << 17 };
 

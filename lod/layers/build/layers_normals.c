@@ -1,6 +1,5 @@
 /* Normals for samples that came without. */
 
-#include "core/base/base.h"
 #include "core/base/eigen.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"

@@ -1,6 +1,5 @@
 /* Nodes and branches as bytes. */
 
-#include "core/base/base.h"
 #include "lod/layers/build/layers_node.h"
 
 static size_t padded_facets_bytes(const conic_layers_node *node) {

@@ -1,7 +1,5 @@
 #include "lod/layers/build/layers_parts.h"
 
-#include "core/base/base.h"
-
 /* There are about so many pieces for each process, and so many cells in a piece. The more pieces, the more even are the
  * parts, and the more of them are merged one after the other. */
 enum { PIECES_A_PROCESS = 16, CELLS_A_PIECE = 4 };

@@ -1,8 +1,6 @@
 /* What of a sample goes into the cloud beside place, normal, colour and size. */
 
-#include "core/base/base.h"
 #include "lod/layers/build/layers_raws.h"
-#include "lod/layers/format/layers_code.h"
 
 /* How many of a length's 23 bits of fraction are kept. */
 enum { AXES_KEPT = 12, MOST_OF_SIZE = 4, FRACTION_BITS = 23 };

@@ -1,6 +1,5 @@
 #include "lod/layers/build/layers_raws.h"
 
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "lod/layers/format/layers_key.h"
 

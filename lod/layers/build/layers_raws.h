@@ -3,8 +3,6 @@
 #ifndef CONIC_LAYERS_RAWS_H
 #define CONIC_LAYERS_RAWS_H
 
-#include "conic/splats.h"
-#include "core/base/team.h"
 #include "core/coloring/value_limits.h"
 #include "core/files/spool.h"
 #include "core/splats/point_values.h"

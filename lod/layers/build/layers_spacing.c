@@ -1,7 +1,6 @@
 /* The sampling distance of samples that do not fit into memory. A few of them, taken all over, give a guess of it. The
  * guess says how far to look for the neighbours of some of the few, and a pass over all samples finds these. */
 
-#include "core/base/base.h"
 #include "lod/layers/build/layers_raws.h"
 
 enum { N_PLACES = 256, N_NEAREST = 8, N_CELLS = 16384, MOST_PASSES = 6 };

@@ -1,6 +1,5 @@
 #include "lod/layers/build/layers_thin.h"
 
-#include "core/base/base.h"
 #include "core/base/random.h"
 #include "lod/layers/format/layers_key.h"
 

@@ -1,11 +1,9 @@
 /* A picture, or a window of it, drawn in bands, or in parts of bands, each with no more splats than memory holds. */
 #include "lod/layers/draw/layers_spill.h"
 
-#include "core/base/base.h"
 #include "core/image/image_common.h"
 #include "raster/frame/samples.h"
 #include "raster/frame/statistics.h"
-#include "raster/view/part.h"
 
 typedef struct bands {
   const conic_layers_band_drawing *d;

@@ -1,6 +1,5 @@
 /* How a layered cloud parts its samples, as a picture (after LPC's Figs. 1 and 4). */
 
-#include "core/base/base.h"
 #include "core/coloring/color_ramp.h"
 #include "core/image/box_lines.h"
 #include "core/image/image_common.h"

@@ -1,6 +1,5 @@
 /* Which samples of a layered cloud are drawn, and in which colours. */
 
-#include "core/base/base.h"
 #include "core/base/nearest_word.h"
 #include "core/coloring/coloring_stream.h"
 #include "lod/layers/draw/layers_scene.h"

@@ -1,6 +1,5 @@
 #include "lod/layers/draw/layers_cut.h"
 
-#include "core/base/base.h"
 #include "lod/planner/plan.h"
 
 /* A walk down the tree: what is yet to be looked at. Each level adds one node at most, of an octree seven. */

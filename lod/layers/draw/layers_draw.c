@@ -1,11 +1,7 @@
-#include "conic/layers_draw.h"
-
 #include <limits.h>
 
-#include "core/base/base.h"
 #include "core/image/image_common.h"
 #include "core/image/view_arguments.h"
-#include "lod/layers/draw/layers_gather.h"
 #include "lod/layers/draw/layers_octree.h"
 #include "lod/layers/draw/layers_picture.h"
 #include "lod/layers/draw/layers_spill.h"

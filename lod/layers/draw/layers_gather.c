@@ -1,6 +1,5 @@
 #include "lod/layers/draw/layers_gather.h"
 
-#include "core/base/base.h"
 #include "core/splats/point_values.h"
 #include "lod/layers/draw/layers_octree.h"
 

@@ -2,9 +2,7 @@
 #ifndef CONIC_LAYERS_GATHER_H
 #define CONIC_LAYERS_GATHER_H
 
-#include "core/pictures/georeference.h"
 #include "lod/layers/draw/layers_cut.h"
-#include "lod/layers/draw/layers_scene.h"
 
 /* --- the set --- */
 

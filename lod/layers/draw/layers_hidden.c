@@ -1,9 +1,7 @@
 /* Occlusion culling: which places of a cut are hidden by others. No bit of the picture changes by it. */
 #include "lod/layers/draw/layers_gather.h"
 
-#include "core/base/base.h"
 #include "lod/layers/draw/layers_horizon.h"
-#include "raster/view/part.h"
 
 /* A share of the places is drawn before the rest is looked at again: the first so small a part of all splats, each
  * further one so much larger. */

@@ -4,8 +4,6 @@
 #ifndef CONIC_LAYERS_HORIZON_H
 #define CONIC_LAYERS_HORIZON_H
 
-#include <stddef.h>
-
 #include "raster/view/part.h"
 
 enum { CONIC_HORIZON_LEVELS = 16 };

@@ -1,7 +1,5 @@
 #include "lod/layers/draw/layers_octree.h"
 
-#include "core/base/base.h"
-#include "core/base/radix.h"
 #include "lod/hierarchies/node_shape.h"
 #include "lod/layers/format/layers_key.h"
 

@@ -1,6 +1,5 @@
 /* Reading the pages of a hierarchy that a picture comes to. */
 
-#include "core/base/base.h"
 #include "lod/layers/draw/layers_octree.h"
 
 typedef struct page_reading {

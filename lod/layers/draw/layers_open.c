@@ -1,7 +1,5 @@
 /* Opening layered point clouds: header and index, from wherever they lie. */
 
-#include "core/base/base.h"
-#include "core/files/mapping.h"
 #include "lod/layers/draw/layers_gather.h"
 #include "lod/layers/draw/layers_octree.h"
 

@@ -1,8 +1,6 @@
 /* A picture split into windows that few enough splats meet. */
 #include "lod/layers/draw/layers_spill.h"
 
-#include "core/base/memory.h"
-
 /* No more cells than this along an axis, where the picture is not very long. */
 enum { MOST_CELLS = 256 };
 

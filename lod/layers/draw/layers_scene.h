@@ -2,12 +2,9 @@
 #ifndef CONIC_LAYERS_SCENE_H
 #define CONIC_LAYERS_SCENE_H
 
-#include "conic/layers_draw.h"
 #include "core/splats/raw_colors.h"
 #include "lod/hierarchies/hierarchy.h"
 #include "lod/layers/draw/layers_store.h"
-#include "lod/layers/format/layers_format.h"
-#include "lod/ranges/ranges.h"
 
 struct conic_layers {
   conic_context *context;

@@ -1,7 +1,6 @@
 /* What is gathered to be drawn: splats, their numbers in the file, and the pieces of clouds that they come from. */
 #include "lod/layers/draw/layers_gather.h"
 
-#include "core/base/base.h"
 #include "core/splats/point_values.h"
 
 void conic_layers_set_release(conic_context *context, conic_layers_set *set) {

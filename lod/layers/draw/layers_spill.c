@@ -1,7 +1,5 @@
 #include "lod/layers/draw/layers_spill.h"
 
-#include "core/base/base.h"
-
 #define NO_BLOCK UINT64_MAX
 
 enum { LEAST_BLOCK = 16, MOST_BLOCK = 512, HEAD_BYTES = sizeof(uint64_t) };

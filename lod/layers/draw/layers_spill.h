@@ -3,7 +3,6 @@
 #define CONIC_LAYERS_SPILL_H
 
 #include "core/files/pile.h"
-#include "lod/layers/draw/layers_cut.h"
 #include "lod/layers/draw/layers_gather.h"
 #include "raster/project/projected.h"
 

@@ -1,6 +1,5 @@
 #include "lod/layers/draw/layers_store.h"
 
-#include "core/base/base.h"
 #include "lod/layers/draw/layers_octree.h"
 
 /* So many answers are decoded together. */

@@ -2,9 +2,6 @@
 
 #include "raster/view/method.h"
 
-#include "core/base/base.h"
-#include "core/base/vectors.h"
-
 /* Bounds are computed in double and kept apart by this share, which is more than all that drawing, in floats, rounds.
  */
 static const double slack = 1e-4;

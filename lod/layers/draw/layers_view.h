@@ -2,13 +2,8 @@
 #ifndef CONIC_LAYERS_VIEW_H
 #define CONIC_LAYERS_VIEW_H
 
-#include <math.h>
-
-#include "conic/camera.h"
-#include "conic/render.h"
 #include "core/image/viewpoint.h"
 #include "lod/layers/format/layers_decode.h"
-#include "lod/layers/format/layers_format.h"
 #include "raster/view/part.h"
 
 typedef struct conic_layers_view {

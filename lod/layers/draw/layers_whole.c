@@ -1,6 +1,5 @@
 /* All of a layered point cloud as splats, for what needs every one of them: at once, or place by place. */
 
-#include "core/base/base.h"
 #include "lod/layers/draw/layers_gather.h"
 #include "lod/layers/draw/layers_octree.h"
 

@@ -1,6 +1,5 @@
 #include "lod/layers/format/layers_axes.h"
 
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 
 /* Codes 0 to twice the half are −1 to 1, so that the axes are exact. */

@@ -3,9 +3,7 @@
  * node above it. So memory does not grow with the file. */
 
 #include "conic/layers.h"
-#include "core/base/base.h"
 #include "lod/layers/format/layers_decode.h"
-#include "lod/layers/format/layers_format.h"
 
 /* A sample as it would be drawn. */
 typedef struct drawn_sample {

@@ -1,6 +1,5 @@
 #include "lod/layers/format/layers_code.h"
 
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "lod/layers/format/layers_key.h"
 

@@ -4,7 +4,6 @@
 
 #include "core/files/zstd.h"
 #include "lod/layers/format/layers_format.h"
-#include "lod/layers/format/layers_schema.h"
 
 /* --- attributes as streams of bytes that are alike --- */
 

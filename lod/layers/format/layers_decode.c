@@ -1,9 +1,7 @@
 #include "lod/layers/format/layers_decode.h"
 
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/base/color.h"
-#include "core/files/mapping.h"
 #include "lod/layers/format/layers_code.h"
 #include "lod/layers/format/layers_key.h"
 

@@ -1,11 +1,9 @@
 #include "lod/layers/format/layers_format.h"
 
 #include "conic/layers.h"
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/files/file.h"
 #include "core/files/file_body.h"
-#include "core/files/mapping.h"
 
 static const unsigned char magic[8] = {'C', 'O', 'N', 'I', 'C', 'L', 'P', '\n'};
 

@@ -3,7 +3,6 @@
 #ifndef CONIC_LAYERS_FORMAT_H
 #define CONIC_LAYERS_FORMAT_H
 
-#include "core/base/base.h"
 #include "core/files/mapping.h"
 #include "lod/layers/format/layers_schema.h"
 

@@ -2,7 +2,6 @@
 #include "lod/layers/format/layers_format.h"
 
 #include "conic/layers.h"
-#include "core/base/base.h"
 
 static conic_status read_tables(conic_layers_file *file) {
   conic_status status =

@@ -1,6 +1,5 @@
 #include "lod/layers/format/layers_schema.h"
 
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/splats/point_fields.h"
 

@@ -1,7 +1,6 @@
 /* Splits each attribute of a cloud's records into streams of bytes that are alike, and joins them again. */
 #include "lod/layers/format/layers_code.h"
 
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "lod/layers/format/layers_axes.h"
 
