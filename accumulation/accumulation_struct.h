@@ -1,6 +1,5 @@
 /* The members of the sums of a run of samples. */
-#ifndef CONIC_ACCUMULATION_STRUCT_H
-#define CONIC_ACCUMULATION_STRUCT_H
+#pragma once
 
 #include "accumulation/exact_sum.h"
 #include "conic/accumulate.h"
@@ -18,5 +17,3 @@ struct conic_accumulation {
 
 /* The place of a plane's first channel in a pixel's sums; the half's luminance is the last channel. */
 size_t conic_accumulation_channel(unsigned planes, conic_plane plane);
-
-#endif

@@ -1,9 +1,6 @@
 /* Points of a disc (a lens, the sun) from two numbers of the sequence. */
-#ifndef CONIC_DISC_POINT_H
-#define CONIC_DISC_POINT_H
+#pragma once
 
 /* A point of the unit disc. Squares about the square's centre become circles; areas and neighbourhoods are kept
  * (Shirley and Chiu, "A low distortion map between disk and square", 1997). u and v are in [0, 1). */
 void conic_disc_point(double u, double v, double point[2]);
-
-#endif

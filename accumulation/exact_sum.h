@@ -1,8 +1,7 @@
 /* Sums of floats without rounding: fixed-point numbers of 128 bits, half of them behind the point. Adding integers is
  * associative, so the order of a sum does not matter. A float of magnitude 2⁻⁴⁰ to 2³⁸ is held exactly; bits below 2⁻⁶⁴
  * are cut off towards 0. There is room for 2²⁴ summands of up to 2³⁸. */
-#ifndef CONIC_EXACT_SUM_H
-#define CONIC_EXACT_SUM_H
+#pragma once
 
 #include <stdint.h>
 
@@ -40,5 +39,3 @@ static inline double conic_exact_value(conic_exact_sum sum) {
   double value = (double)size.whole + (double)size.part * 0x1p-64;
   return is_negative ? -value : value;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* The keys of a motion, as in their file. */
-#ifndef CONIC_MOTION_FILE_H
-#define CONIC_MOTION_FILE_H
+#pragma once
 
 #include "conic/context.h"
 
@@ -22,5 +21,3 @@ typedef struct conic_motion_keys {
 /* Reads the file. The caller releases the keys, after a failure, too. Errors: INPUT, MEMORY. */
 conic_status conic_motion_keys_read(conic_context *context, const char *path, conic_motion_keys *keys);
 void conic_motion_keys_release(conic_context *context, conic_motion_keys *keys);
-
-#endif

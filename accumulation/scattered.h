@@ -1,7 +1,6 @@
 /* Sums of samples that are no run: several processes make them of one accumulation's samples. Their facts mean nothing
  * until they are joined into the sums of a run. */
-#ifndef CONIC_SCATTERED_H
-#define CONIC_SCATTERED_H
+#pragma once
 
 #include "conic/accumulate.h"
 
@@ -40,5 +39,3 @@ void conic_accumulation_joined(conic_accumulation *sums, uint64_t first_sample);
 
 /* Removes all samples. */
 void conic_accumulation_clear(conic_accumulation *sums);
-
-#endif

@@ -1,6 +1,5 @@
 /* The low-discrepancy sequence that places all samples of a picture (docs/reference/accumulation.md). */
-#ifndef CONIC_SEQUENCE_H
-#define CONIC_SEQUENCE_H
+#pragma once
 
 #include <stdint.h>
 
@@ -24,5 +23,3 @@ enum {
  * samples that starts at a multiple of 2ᵏ has one sample in each 2ᵏ-th of each dimension; in the two dimensions of the
  * pixel it has one in each of the 2ᵏ equal boxes of any power-of-two shape. */
 double conic_sequence_at(uint64_t i_sample, int dimension);
-
-#endif

@@ -1,7 +1,6 @@
 /* What the parts of `conic bench` share: scenes, the lines that are measured, the machine beneath.
  * docs/reference/benchmark.md has the definitions. */
-#ifndef CONIC_BENCH_H
-#define CONIC_BENCH_H
+#pragma once
 
 #include "cli/device_option.h"
 #include "cli/json_write.h"
@@ -273,5 +272,3 @@ void cli_bench_print_curve(const cli_bench_line *lines, int n_lines);
 /* Reads the times of an earlier run into the lines of the same names. Errors: INPUT, MEMORY. */
 conic_status cli_bench_read_old(cli_session *session, const char *path, cli_bench_line *lines, int n_lines);
 void cli_bench_print_comparison(const char *path, const cli_bench_line *lines, int n_lines);
-
-#endif

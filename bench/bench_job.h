@@ -1,6 +1,5 @@
 /* One `conic bench`: what was asked for, the lines that this means, and what they are measured with. */
-#ifndef CONIC_BENCH_JOB_H
-#define CONIC_BENCH_JOB_H
+#pragma once
 
 #include "bench/bench.h"
 
@@ -44,5 +43,3 @@ int cli_bench_plan(cli_bench_job *job);
 
 /* Measures every line. Returns the exit code, after a message; 1 where a picture was wrong. */
 int cli_bench_run(cli_session *session, cli_bench_job *job);
-
-#endif

@@ -1,6 +1,5 @@
 /* The speed–accuracy chart: what was measured, and drawing it. */
-#ifndef CONIC_CHART_H
-#define CONIC_CHART_H
+#pragma once
 
 #include "cli/session.h"
 #include "core/files/file.h"
@@ -60,5 +59,3 @@ conic_status cli_chart_put(const cli_session *session, const char *folder, const
 static inline const cli_chart_error *cli_chart_error_of(const cli_chart_point *point, int against_truth) {
   return against_truth ? &point->truth : &point->oracle;
 }
-
-#endif

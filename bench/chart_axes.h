@@ -1,7 +1,6 @@
 /* The chart of scenes of the user's own: error over time, primitives and bytes, along the options of conic render that
  * trade one for the other. */
-#ifndef CONIC_CHART_AXES_H
-#define CONIC_CHART_AXES_H
+#pragma once
 
 #include "bench/chart_ways.h"
 
@@ -60,5 +59,3 @@ int cli_axis_count_of(const cli_axis_chart *chart, const char *axis);
 
 /* What is best for its time, on standard output. */
 void cli_axis_chart_print(const cli_axis_chart *chart);
-
-#endif

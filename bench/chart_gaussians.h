@@ -1,6 +1,5 @@
 /* The chart of a Gaussian scene: the error of every profile against the truths over its time. */
-#ifndef CONIC_CHART_GAUSSIANS_H
-#define CONIC_CHART_GAUSSIANS_H
+#pragma once
 
 #include "bench/chart.h"
 #include "cli/json_write.h"
@@ -46,5 +45,3 @@ conic_status cli_gaussian_chart_write(cli_session *session, const char *folder, 
 /* The table on standard output, and the key "profiles" in JSON. */
 void cli_gaussian_chart_print(const cli_gaussian_chart *chart);
 void cli_gaussian_chart_report(cli_json *json, const cli_gaussian_chart *chart);
-
-#endif

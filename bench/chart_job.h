@@ -1,6 +1,5 @@
 /* The arguments of `conic chart`. */
-#ifndef CONIC_CHART_JOB_H
-#define CONIC_CHART_JOB_H
+#pragma once
 
 #include "bench/chart_ways.h"
 #include "cli/scene/render_job.h"
@@ -17,5 +16,3 @@ typedef struct cli_chart_options {
 /* Reads the arguments into a scene, which begins as cli_scene_defaults has it, and into `own`, which may be null.
  * Returns as cli_scene_parse does. */
 int cli_chart_parse(cli_session *session, int argc, char **argv, cli_render_job *scene, cli_chart_options *own);
-
-#endif

@@ -1,6 +1,5 @@
 /* The chart of methods and kernels, on scenes whose surface is known. */
-#ifndef CONIC_CHART_METHODS_H
-#define CONIC_CHART_METHODS_H
+#pragma once
 
 #include "bench/chart.h"
 
@@ -24,5 +23,3 @@ conic_status cli_method_chart_write(const cli_session *session, const char *fold
 
 /* What is best for its time on each scene, on standard output. */
 void cli_method_chart_print(const cli_method_chart *chart);
-
-#endif

@@ -1,6 +1,5 @@
 /* The ways in which a chart draws its scenes: words of conic render, some of which change from way to way. */
-#ifndef CONIC_CHART_WAYS_H
-#define CONIC_CHART_WAYS_H
+#pragma once
 
 #include "bench/chart.h"
 
@@ -56,5 +55,3 @@ int cli_chart_list_ways(const cli_chart_asked *asked, int i_scene, const cli_cha
  * many. */
 enum { CLI_MOST_WORDS = 2 * CLI_MOST_FACTORS + 4 };
 int cli_chart_words(const cli_chart_asked *asked, int i_scene, const cli_chart_way *way, const char **argv);
-
-#endif

@@ -1,7 +1,6 @@
 /* Charts as SVG pictures: panels in a grid, each with axes of its own, and one legend beside them. Whatever is drawn
  * outside a panel's axes is left out. */
-#ifndef CONIC_PLOT_H
-#define CONIC_PLOT_H
+#pragma once
 
 #include <stdio.h>
 
@@ -76,5 +75,3 @@ void cli_plot_words(cli_plot *plot, const char *color, double x, double y, const
 void cli_plot_key(cli_plot *plot, const cli_plot_style *style, const char *name);
 
 void cli_plot_end(cli_plot *plot);
-
-#endif

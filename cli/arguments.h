@@ -1,6 +1,5 @@
 /* Command-line arguments, by table. Long options take `--name value` and `--name=value`; `--` ends them. */
-#ifndef CONIC_ARGUMENTS_H
-#define CONIC_ARGUMENTS_H
+#pragma once
 
 #include "cli/option_facts.h"
 #include "cli/session.h"
@@ -127,5 +126,3 @@ int cli_because(const char *reason);
 int cli_parse_vector(const char *text, double vector[3]);
 int cli_parse_direction(const char *text, double vector[3]);
 int cli_parse_pair(const char *text, char separator, double pair[2]);
-
-#endif

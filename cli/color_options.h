@@ -1,6 +1,5 @@
 /* --color-by, --ramp and --color-range, which commands that draw and that build share. */
-#ifndef CONIC_COLOR_OPTIONS_H
-#define CONIC_COLOR_OPTIONS_H
+#pragma once
 
 #include "cli/arguments.h"
 #include "cli/json_write.h"
@@ -49,5 +48,3 @@ int cli_color_is_asked(const conic_coloring_options *coloring);
 
 /* The object "coloring"; nothing where it is null. */
 void cli_color_report(cli_json *json, const conic_coloring *coloring);
-
-#endif

@@ -1,6 +1,5 @@
 /* The sub-commands, one file each: cli/NAME.c. */
-#ifndef CONIC_COMMAND_H
-#define CONIC_COMMAND_H
+#pragma once
 
 #include "cli/session.h"
 
@@ -54,5 +53,3 @@ void cli_help_text(cli_session *session, const struct cli_option_table *table);
 
 /* Says that there is no such command or option, and which is near. Returns CLI_USAGE. */
 int cli_refuse_command(const char *name);
-
-#endif

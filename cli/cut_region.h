@@ -1,6 +1,5 @@
 /* The part of the world that conic cut keeps. */
-#ifndef CONIC_CUT_REGION_H
-#define CONIC_CUT_REGION_H
+#pragma once
 
 #include "conic/splats.h"
 
@@ -25,5 +24,3 @@ conic_status cli_cut_read_polygons(conic_context *context, const char *path, cli
  * empty. Errors: MEMORY. */
 conic_status cli_cut_take(conic_context *context, const cli_cut_region *region, const conic_splats *batch,
                           conic_splats *kept);
-
-#endif

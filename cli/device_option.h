@@ -1,6 +1,5 @@
 /* --device, --isa: what draws. */
-#ifndef CONIC_DEVICE_OPTION_H
-#define CONIC_DEVICE_OPTION_H
+#pragma once
 
 #include "cli/session.h"
 
@@ -21,5 +20,3 @@ int cli_isa_check(const cli_session *session, conic_isa isa);
 
 /* A renderer that draws there, which the caller destroys. Errors: UNSUPPORTED, MEMORY. */
 conic_status cli_device_open(cli_session *session, cli_device *device, conic_renderer **renderer);
-
-#endif

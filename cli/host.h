@@ -1,7 +1,6 @@
 /* A program that runs commands within itself, as Python does: what it gives and gets in place of words, files and text,
  * and who hears what a shell's user would see. */
-#ifndef CONIC_HOST_H
-#define CONIC_HOST_H
+#pragma once
 
 #include "conic/conic.h"
 
@@ -102,5 +101,3 @@ CONIC_API int cli_host_draw(cli_host *host, int n_inputs, const char **inputs, c
  * them as for drawing. The facts are then "shot": the shot with these inputs, as conic_shot_file_print writes it whole,
  * where what decides no bit is as it is by default. Returns an exit code. */
 CONIC_API int cli_host_look(cli_host *host, const conic_shot_file *file);
-
-#endif

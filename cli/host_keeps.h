@@ -1,7 +1,6 @@
 /* What a command of a host's does otherwise than one of a shell's: where its pictures and its facts go, and what it
  * keeps. Without a host each of these does what the program does, or nothing. */
-#ifndef CONIC_HOST_KEEPS_H
-#define CONIC_HOST_KEEPS_H
+#pragma once
 
 #include "cli/device_option.h"
 #include "cli/host.h"
@@ -35,5 +34,3 @@ unsigned cli_kept_abilities(const cli_session *session, const char *const *paths
 /* Whether a renderer of that device is kept, which this run then has; keeps one, or destroys it. */
 int cli_kept_renderer(const cli_session *session, cli_device *device, conic_renderer **renderer);
 void cli_keep_renderer(const cli_session *session, const cli_device *device, conic_renderer *renderer);
-
-#endif

@@ -1,7 +1,6 @@
 /* A writer for the JSON that --json asks for: objects and arrays nest, keys come in call order. Numbers are printed so
  * that they read back as the same double; NaN and infinity become null. */
-#ifndef CONIC_JSON_WRITE_H
-#define CONIC_JSON_WRITE_H
+#pragma once
 
 #include "conic/model.h"
 #include "core/base/base.h"
@@ -68,5 +67,3 @@ int cli_json_write(struct cli_session *session, void (*members)(cli_json *json, 
 
 /* Whether standard output is for people: the session is not quiet, and --json does not go there. */
 int cli_json_leaves_text(const struct cli_session *session);
-
-#endif

@@ -1,6 +1,5 @@
 /* What decides how files are read: the key by which an opened source is found again. */
-#ifndef CONIC_OPENING_KEY_H
-#define CONIC_OPENING_KEY_H
+#pragma once
 
 #include "conic/source.h"
 #include "core/files/sha256.h"
@@ -20,5 +19,3 @@ typedef struct cli_opened {
 cli_opened cli_opened_with(const conic_source_options *options);
 /* Whether these options, of the same key, make the same source. */
 int cli_is_opened_alike(const conic_source *source, const cli_opened *opened, const conic_source_options *options);
-
-#endif

@@ -1,6 +1,5 @@
 /* Whether options change anything: by the facts and the other options on which each has an effect (cli_option.acts). */
-#ifndef CONIC_OPTION_CHECK_H
-#define CONIC_OPTION_CHECK_H
+#pragma once
 
 #include "cli/arguments.h"
 
@@ -34,5 +33,3 @@ int cli_effects_check_with(const cli_session *session, const cli_option *table, 
 
 /* A fact in a word, for the help. */
 const char *cli_fact_name(int fact);
-
-#endif

@@ -1,6 +1,5 @@
 /* What options of pictures have an effect on, as bits of cli_effect (cli/arguments.h). */
-#ifndef CONIC_OPTION_FACTS_H
-#define CONIC_OPTION_FACTS_H
+#pragma once
 
 enum cli_fact {
   /* Of what is drawn. Some of these are known only once it is read; until then they may hold. */
@@ -88,5 +87,3 @@ typedef unsigned long long cli_facts; /* a set of them */
 #define CLI_WRITES_MORE (CLI_FACT(DEEP) | CLI_FACT(SHOWN) | CLI_FACT(PROGRESSIVE) | CLI_FACT(BACKDROP))
 #define CLI_CHOSEN (CLI_FACT(ERROR) | CLI_FACT(BUDGET))
 #define CLI_SAMPLES (CLI_FACT(ACCUMULATED) | CLI_FACT(SAMPLE))
-
-#endif

@@ -1,6 +1,5 @@
 /* What a run writes, asked about before the work: whether it can be written, and what it would be written over. */
-#ifndef CONIC_OUTPUTS_H
-#define CONIC_OUTPUTS_H
+#pragma once
 
 #include "cli/session.h"
 
@@ -20,5 +19,3 @@ int cli_check_ending(const char *path, const char *ending);
 
 /* Adds to a picture's header, where there is room, a text or, where that is null, a number. */
 void cli_name_attribute(conic_image *image, const char *name, const char *text, double value);
-
-#endif

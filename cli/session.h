@@ -1,6 +1,5 @@
 /* What every sub-command shares: the context with its messages and progress bar, exit codes, the clock, JSON output. */
-#ifndef CONIC_SESSION_H
-#define CONIC_SESSION_H
+#pragma once
 
 #include "conic/conic.h"
 #include "core/base/base.h"
@@ -80,5 +79,3 @@ int cli_exit_after_signals(int exit_code);
 double cli_seconds(void);
 /* The process's peak resident set. */
 unsigned long long cli_peak_rss_bytes(void);
-
-#endif

@@ -4,8 +4,7 @@
  *
  * Collective functions are called by every process of the team in the same order. So whoever failed comes to the next
  * cli_team_agree, too, and after one that returned a failure there are no collective functions any more. */
-#ifndef CONIC_SESSION_TEAM_H
-#define CONIC_SESSION_TEAM_H
+#pragma once
 
 #include "cli/session.h"
 #include "shots/executor.h"
@@ -39,5 +38,3 @@ typedef struct cli_team_work {
 
 cli_team_work cli_team_units(void);
 cli_team_work cli_team_stages(void);
-
-#endif

@@ -1,7 +1,6 @@
 /* What surrounds the program, where systems differ: its arguments, signals and terminal, names by patterns.
  * shell_posix.c and shell_windows.c. */
-#ifndef CONIC_SHELL_H
-#define CONIC_SHELL_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -32,5 +31,3 @@ void cli_shell_give_back_memory(void);
 
 /* Every name that a pattern with *, ? and [ … ] is of, until `take` returns 0. Returns 0 without memory. */
 int cli_shell_match(const char *pattern, int (*take)(void *cookie, const char *path), void *cookie);
-
-#endif

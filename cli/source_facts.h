@@ -1,6 +1,5 @@
 /* What a source says of itself, as JSON and for people. */
-#ifndef CONIC_SOURCE_FACTS_H
-#define CONIC_SOURCE_FACTS_H
+#pragma once
 
 #include "cli/json_write.h"
 #include "conic/source.h"
@@ -11,5 +10,3 @@ void cli_facts_report(cli_json *json, const conic_facts *facts, size_t first);
 void cli_facts_print(const conic_facts *facts);
 /* Whether none was. */
 int cli_facts_are_sound(const conic_facts *facts);
-
-#endif

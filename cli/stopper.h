@@ -1,7 +1,6 @@
 /* Ends a run that was asked to stop and does not: whatever it waits for or works on, a signal is obeyed within a
  * second, and nothing half-written stays. */
-#ifndef CONIC_STOPPER_H
-#define CONIC_STOPPER_H
+#pragma once
 
 #include "conic/conic.h"
 
@@ -14,5 +13,3 @@ void cli_stopper_end(void);
 
 /* Grants the run another third of a second, or, asked again, none. Whether somebody watches. For signal handlers. */
 int cli_stopper_ask(void);
-
-#endif

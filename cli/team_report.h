@@ -1,6 +1,5 @@
 /* What each process of a team (cli/session_team.h) had to do with a command, for --json. */
-#ifndef CONIC_TEAM_REPORT_H
-#define CONIC_TEAM_REPORT_H
+#pragma once
 
 #include "cli/json_write.h"
 #include "cli/session_team.h"
@@ -22,5 +21,3 @@ void cli_team_report_release(cli_team_report *report);
 
 /* The object "team", if there is something to say; `what` was shared: "frames". */
 void cli_team_report_write(cli_json *json, const char *what, const cli_team_report *report);
-
-#endif

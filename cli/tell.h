@@ -1,7 +1,6 @@
 /* What --verbose adds on standard error, in the same words from every command. Other lines go there by conic_log with
  * CONIC_LOG_INFO. */
-#ifndef CONIC_TELL_H
-#define CONIC_TELL_H
+#pragma once
 
 #include "cli/session.h"
 
@@ -22,5 +21,3 @@ void cli_tell_stages(cli_session *session, const cli_stage *stages, int n_stages
 
 /* The same for all of a run, with the memory that it took. */
 void cli_tell_run(cli_session *session, const cli_stage *stages, int n_stages, double total_seconds);
-
-#endif

@@ -1,6 +1,5 @@
 /* Parts of gathering a picture: the grid of each view, and pictures that consist of views. */
-#ifndef CONIC_GATHER_VIEWS_H
-#define CONIC_GATHER_VIEWS_H
+#pragma once
 
 #include "conic/gather.h"
 #include "core/image/camera_rays.h"
@@ -26,5 +25,3 @@ conic_status conic_gather_parallel(const conic_gathering *g);
 
 /* Gathers all other pictures. */
 conic_status conic_gather_central(const conic_gathering *g);
-
-#endif

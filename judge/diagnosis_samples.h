@@ -1,6 +1,5 @@
 /* The pixels by which explanations are compared: wrong ones, and right ones beside them. */
-#ifndef CONIC_DIAGNOSIS_SAMPLES_H
-#define CONIC_DIAGNOSIS_SAMPLES_H
+#pragma once
 
 #include "conic/diagnosis.h"
 #include "judge/planted.h"
@@ -88,5 +87,3 @@ typedef struct conic_trials {
 
 /* Finds explanations as conic_gaussian_diagnose says. */
 conic_status conic_trials_run(conic_trials *trials, conic_diagnosis *found, int room, int *n_found);
-
-#endif

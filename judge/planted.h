@@ -1,6 +1,5 @@
 /* A picture with a mistake: where the scene, the camera, the rules or the finishing differ from the right ones. */
-#ifndef CONIC_PLANTED_H
-#define CONIC_PLANTED_H
+#pragma once
 
 #include "conic/triangles.h"
 #include "gaussians/draw/gaussian_rules.h"
@@ -111,5 +110,3 @@ int conic_suspect_is_finish(const conic_suspect *suspect);
 int conic_suspect_is_profile(const conic_suspect *suspect);
 /* Whether any value is possible: the listed ones are only some. */
 int conic_suspect_is_any(const conic_suspect *suspect);
-
-#endif

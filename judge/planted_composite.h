@@ -1,6 +1,5 @@
 /* Composites samples one by one. */
-#ifndef CONIC_PLANTED_COMPOSITE_H
-#define CONIC_PLANTED_COMPOSITE_H
+#pragma once
 
 #include "gaussians/draw/gaussian_footprint.h"
 #include "judge/diagnosis_samples.h"
@@ -42,5 +41,3 @@ void conic_planted_place(const conic_planted_frame *frame, const uint16_t place[
 
 void conic_planted_composite(const conic_planted_frame *frame, const conic_diagnosis_samples *at,
                              const conic_sample_cell *cell, conic_composite_scratch *scratch, conic_channels *values);
-
-#endif

@@ -1,6 +1,5 @@
 /* Lamps: the point that each shines from, how brightly, and what its light reaches. */
-#ifndef CONIC_LAMPS_H
-#define CONIC_LAMPS_H
+#pragma once
 
 #include "lighting/lit_map.h"
 
@@ -28,5 +27,3 @@ double conic_lamp_strength(const conic_lamp_point *point, const double at[3], do
 /* How much of the lamp's light reaches each receiver unhidden, 0 to 1, into `visible`, with up to six maps. Errors:
  * MEMORY, the drawer's. */
 conic_status conic_lamp_receive(conic_map_room *room, const conic_lamp_point *point, float *visible);
-
-#endif

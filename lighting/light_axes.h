@@ -1,6 +1,5 @@
 /* The axes of a camera that looks along a light. */
-#ifndef CONIC_LIGHT_AXES_H
-#define CONIC_LIGHT_AXES_H
+#pragma once
 
 #include "core/base/vectors.h"
 
@@ -19,5 +18,3 @@ static inline void conic_light_axes(const double direction[3], double rows[3][3]
   conic_normalize(rows[0]);
   conic_cross(rows[2], rows[0], rows[1]);
 }
-
-#endif

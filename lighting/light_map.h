@@ -1,7 +1,6 @@
 /* A light's map: a depth picture of what the light meets first, drawn from the light. A light that is far away is drawn
  * from so far that its rays are practically parallel. */
-#ifndef CONIC_LIGHT_MAP_H
-#define CONIC_LIGHT_MAP_H
+#pragma once
 
 #include "conic/lighting.h"
 #include "core/lanes/instruction_sets.h"
@@ -48,5 +47,3 @@ typedef struct conic_lighting_loops {
 } conic_lighting_loops;
 
 CONIC_DECLARE_LOOPS(conic_lighting_loops);
-
-#endif

@@ -1,7 +1,6 @@
 /* conic_image_light by several processes: each draws the maps of some directions, and tells which receivers their light
  * reaches. */
-#ifndef CONIC_LIGHT_SHARING_H
-#define CONIC_LIGHT_SHARING_H
+#pragma once
 
 #include "conic/lighting.h"
 #include "core/base/team.h"
@@ -19,5 +18,3 @@ typedef struct conic_light_sharing {
 conic_status conic_image_light_shared(conic_context *context, const conic_casters *casters, const conic_camera *camera,
                                       const conic_render_options *render, const conic_lighting_options *options,
                                       conic_light_sharing *sharing, conic_image *image);
-
-#endif

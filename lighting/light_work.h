@@ -1,6 +1,5 @@
 /* A picture that is being lit. */
-#ifndef CONIC_LIGHT_WORK_H
-#define CONIC_LIGHT_WORK_H
+#pragma once
 
 #include "lighting/lit_map.h"
 #include "raster/tiles/finish.h"
@@ -107,5 +106,3 @@ static inline int conic_light_shade(const conic_light_work *l, const conic_finis
 /* Adds the arriving light of the options' lamps to the picture's colours, and to its shadow, which is divided by the
  * power later. Errors: MEMORY, CANCELLED, the drawer's. */
 conic_status conic_light_add_lamps(conic_light_work *l);
-
-#endif

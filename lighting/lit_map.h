@@ -1,6 +1,5 @@
 /* Draws maps and receives their light, one after the other. */
-#ifndef CONIC_LIT_MAP_H
-#define CONIC_LIT_MAP_H
+#pragma once
 
 #include "lighting/light_map.h"
 #include "lighting/light_sharing.h"
@@ -59,5 +58,3 @@ conic_status conic_sky_sums_add(conic_map_room *room, const conic_lighting_optio
 static inline float conic_sky_sums_share(const conic_sky_sums *sums, size_t i) {
   return sums->facing[i] > 0.0f ? sums->visible[i] / sums->facing[i] : 1.0f;
 }
-
-#endif

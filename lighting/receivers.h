@@ -1,6 +1,5 @@
 /* What light falls on: points of a surface, with their normals. */
-#ifndef CONIC_RECEIVERS_H
-#define CONIC_RECEIVERS_H
+#pragma once
 
 #include "conic/image.h"
 #include "conic/splats.h"
@@ -35,5 +34,3 @@ int conic_pixel_place(const conic_camera_rays *rays, double x_px, double y_px, d
 
 /* The unit direction in the world from what a pixel shows to the viewer. */
 void conic_pixel_viewer(const conic_camera_rays *rays, size_t x, size_t y, float viewer[3]);
-
-#endif

@@ -1,7 +1,6 @@
 /* What a rank hands over while it goes on with its work: a thread of its own sends it, in the order in which it was
  * put. Called by one thread. */
-#ifndef CONIC_OUTBOX_H
-#define CONIC_OUTBOX_H
+#pragma once
 
 #include <stddef.h>
 
@@ -19,5 +18,3 @@ void outbox_wait(void);
 
 /* Ends the thread, after that. */
 void outbox_end(void);
-
-#endif

@@ -3,8 +3,7 @@
  * A thread of rank 0 gives out units and takes what is handed over, while rank 0 computes like all others: no rank is a
  * mere master. Waiting is asleep, so that ranks may be more than cores. What MPI itself finds wrong ends all ranks.
  * "Collective" functions are called by all ranks in the same order, each by one thread. */
-#ifndef CONIC_RANKS_H
-#define CONIC_RANKS_H
+#pragma once
 
 #include "shots/executor.h"
 
@@ -30,5 +29,3 @@ void ranks_fill(conic_executor *executor, conic_team *team);
 void *ranks_gather(const void *bytes, size_t n_bytes, size_t *sizes);
 /* Collective. */
 void ranks_barrier(void);
-
-#endif

@@ -1,6 +1,5 @@
 /* What each rank did and when, for --trace: events in Chrome's format, which scripts/simulate and browsers read. */
-#ifndef CONIC_TIMELINE_H
-#define CONIC_TIMELINE_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -11,5 +10,3 @@ void timeline_note(void *unused, const char *kind, const char *name, uint64_t nu
                    uint64_t sent_bytes);
 /* Collective: rank 0 writes the events of all. Returns the exit code. */
 int timeline_write(const char *path);
-
-#endif

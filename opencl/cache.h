@@ -1,7 +1,6 @@
 /* Bytes kept from run to run, in files that are whole or not there: written beside and renamed, and with a checksum,
  * since a driver that is given half a binary may do anything. */
-#ifndef CONIC_CACHE_H
-#define CONIC_CACHE_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -13,5 +12,3 @@ int conic_cache_read(conic_context *context, const char *path, unsigned char **b
 
 /* Writes it, and makes the path's folders. What fails is told as information only. */
 void conic_cache_write(conic_context *context, const char *path, const unsigned char *bytes, size_t n_bytes);
-
-#endif

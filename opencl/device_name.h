@@ -1,6 +1,5 @@
 /* The names of OpenCL devices, which builds without OpenCL know too. */
-#ifndef CONIC_DEVICE_NAME_H
-#define CONIC_DEVICE_NAME_H
+#pragma once
 
 #include "conic/opencl.h"
 
@@ -12,5 +11,3 @@ typedef struct conic_device_name {
 /* Reads "opencl", with ":P.D" and ":gather" or ":lanes" behind it or not. Returns 0 where the text is no such name;
  * null is none. */
 int conic_device_name_read(const char *text, conic_device_name *name);
-
-#endif

@@ -1,7 +1,6 @@
 /* One frame on its way through a device's stages. Who wants to look at what a stage has made calls the stages one by
  * one and reads their buffers with conic_queue_read. */
-#ifndef CONIC_FRAME_H
-#define CONIC_FRAME_H
+#pragma once
 
 #include "opencl/layout.h"
 #include "opencl/opencl_renderer.h"
@@ -94,5 +93,3 @@ conic_status conic_frame_project_on_host(conic_frame *frame);
 conic_status conic_frame_draw(conic_backend *backend, const conic_view *view, const conic_splats *splats,
                               struct conic_triangle_frame *triangles, const conic_finish *finish, conic_image *image,
                               conic_render_statistics *statistics);
-
-#endif

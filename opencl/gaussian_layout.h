@@ -1,7 +1,6 @@
 /* What the host tells a device about a picture of Gaussians: read by both compilers. Footprints, rays and hits are the
  * records of gaussians/draw, whose layouts are the same in both. */
-#ifndef CONIC_GAUSSIAN_LAYOUT_H
-#define CONIC_GAUSSIAN_LAYOUT_H
+#pragma once
 
 #include "gaussians/draw/gaussian_target.h"
 
@@ -16,5 +15,3 @@ typedef struct conic_device_gaussians {
   uint64_t first_entry;
   float background[3];
 } conic_device_gaussians;
-
-#endif

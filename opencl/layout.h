@@ -1,7 +1,6 @@
 /* What the host and the device's programs tell each other: read by both compilers. Beside it they share the records of
  * raster/project/projected.h and conic_view, whose layouts are the same in both. */
-#ifndef CONIC_LAYOUT_H
-#define CONIC_LAYOUT_H
+#pragma once
 
 #include <stdint.h>
 
@@ -104,5 +103,3 @@ typedef struct conic_device_frame {
   uint32_t first_triangle_id;
   float triangle_epsilon;
 } conic_device_frame;
-
-#endif

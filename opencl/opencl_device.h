@@ -1,6 +1,5 @@
 /* OpenCL's platforms and devices, and what its calls answer. */
-#ifndef CONIC_OPENCL_DEVICE_H
-#define CONIC_OPENCL_DEVICE_H
+#pragma once
 
 #ifndef CL_TARGET_OPENCL_VERSION
 #define CL_TARGET_OPENCL_VERSION 120
@@ -16,5 +15,3 @@ conic_status conic_opencl_check(conic_context *context, cl_int answer, const cha
 /* Finds the device that the options ask for. Errors: ARGUMENT, UNSUPPORTED, MEMORY. */
 conic_status conic_opencl_find(conic_context *context, const conic_opencl_options *options, cl_platform_id *platform,
                                cl_device_id *id, conic_opencl_device *device);
-
-#endif

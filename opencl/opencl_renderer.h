@@ -1,6 +1,5 @@
 /* A device that is ready to draw: its queue, its programs' entries, its memory. */
-#ifndef CONIC_OPENCL_RENDERER_H
-#define CONIC_OPENCL_RENDERER_H
+#pragma once
 
 #include "gaussians/draw/gaussian_device.h"
 #include "opencl/queue.h"
@@ -129,5 +128,3 @@ conic_status conic_opencl_need_gaussians(conic_opencl *opencl);
 
 /* The slot of the Gaussians' device. */
 conic_status conic_opencl_composite(conic_gaussian_device *device, const conic_gaussian_composition *composition);
-
-#endif

@@ -1,6 +1,5 @@
 /* Programs for a device: built from the text within this library, or taken from where an earlier run has kept them. */
-#ifndef CONIC_PROGRAM_H
-#define CONIC_PROGRAM_H
+#pragma once
 
 #include "opencl/opencl_device.h"
 
@@ -21,5 +20,3 @@ extern const conic_opencl_text conic_opencl_setup_text, conic_opencl_raster_text
 conic_status conic_opencl_build(conic_context *context, cl_context cl, cl_device_id id,
                                 const conic_opencl_device *device, int tile_bits, const conic_opencl_text *text,
                                 const char *cache_folder, cl_program *program);
-
-#endif

@@ -1,6 +1,5 @@
 /* A device's queue: its work, memory that grows, and how long each stage took. */
-#ifndef CONIC_QUEUE_H
-#define CONIC_QUEUE_H
+#pragma once
 
 #include "opencl/opencl_device.h"
 
@@ -70,5 +69,3 @@ conic_status conic_queue_run(conic_queue *queue, conic_stage stage, cl_kernel en
 
 /* Waits for all, and adds the commands' times to ms. */
 conic_status conic_queue_finish(conic_queue *queue);
-
-#endif

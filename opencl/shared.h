@@ -1,7 +1,6 @@
 /* What stands before the text that plain C and OpenCL C share: names that OpenCL C keeps for itself are changed, and
  * what has no place on a device is left out. Only for the preprocessor (cmake/opencl_program.cmake). */
-#ifndef CONIC_SHARED_H
-#define CONIC_SHARED_H
+#pragma once
 
 #define CONIC_ON_DEVICE
 
@@ -28,5 +27,3 @@
 #include "conic/status.h"
 typedef struct conic_context conic_context;
 #define conic_clip_filter(...) conic_clip_filter_is_not_here(void)
-
-#endif

@@ -1,6 +1,5 @@
 /* The oracle's work: blocks of pixels, each with the splats and triangles that may show in it. */
-#ifndef CONIC_ORACLE_BLOCKS_H
-#define CONIC_ORACLE_BLOCKS_H
+#pragma once
 
 #include "oracle/oracle_bounds.h"
 
@@ -15,5 +14,3 @@ typedef struct oracle_job {
 
 /* Fills the reference. Errors: MEMORY, CANCELLED. */
 conic_status conic_oracle_work(const oracle_job *job);
-
-#endif

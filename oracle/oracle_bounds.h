@@ -1,6 +1,5 @@
 /* What a pixel in doubt may hold: bounds of every plane, whichever way each of its decisions falls. */
-#ifndef CONIC_ORACLE_BOUNDS_H
-#define CONIC_ORACLE_BOUNDS_H
+#pragma once
 
 #include "oracle/oracle_triangle.h"
 
@@ -61,5 +60,3 @@ typedef struct oracle_bounding {
 conic_status conic_oracle_bound(const oracle_bounding *room, double x, double y, uint32_t pixel,
                                 oracle_fragment *fragments, size_t n, const oracle_rivals *rivals,
                                 oracle_doubts *doubts, int *is_unbounded);
-
-#endif

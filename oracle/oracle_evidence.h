@@ -1,6 +1,5 @@
 /* What is held against the oracle: a value of a picture with what it stands for, and the pixels that are worst. */
-#ifndef CONIC_ORACLE_EVIDENCE_H
-#define CONIC_ORACLE_EVIDENCE_H
+#pragma once
 
 #include "conic/oracle.h"
 #include "oracle/oracle_math.h"
@@ -57,5 +56,3 @@ void conic_oracle_worst_put(oracle_worst *worst, const conic_oracle_fault *fault
 
 /* Whether the greatest values are there for all planes of an image. */
 int conic_oracle_evidence_fits(const conic_image *image, const conic_image *greatest);
-
-#endif

@@ -1,6 +1,5 @@
 /* The oracle's own arithmetic: double precision, nothing shared with the pipeline. */
-#ifndef CONIC_ORACLE_MATH_H
-#define CONIC_ORACLE_MATH_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -68,5 +67,3 @@ static inline void oracle_apply(oracle_symmetric m, const double v[2], double re
   result[0] = x;
   result[1] = y;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* A pixel of the oracle: what covers it, what is visible, what the planes hold, and what is in doubt. */
-#ifndef CONIC_ORACLE_PIXEL_H
-#define CONIC_ORACLE_PIXEL_H
+#pragma once
 
 #include "oracle/oracle_scene.h"
 
@@ -106,5 +105,3 @@ typedef struct oracle_request {
 conic_status conic_oracle_draw(conic_context *context, const conic_drawing *drawing, const conic_camera *camera,
                                const conic_render_options *options, const oracle_request *request,
                                conic_reference *reference);
-
-#endif

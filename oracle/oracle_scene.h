@@ -1,6 +1,5 @@
 /* The oracle's scene: where every splat may show, and any of them in camera space, with what is in doubt about it. */
-#ifndef CONIC_ORACLE_SCENE_H
-#define CONIC_ORACLE_SCENE_H
+#pragma once
 
 #include "oracle/oracle_splat.h"
 
@@ -72,5 +71,3 @@ int conic_oracle_scene_place(const oracle_scene *scene, size_t i, oracle_splat *
 int conic_oracle_n_inputs(const oracle_view *view);
 /* The splat with one of them as far off as may be. */
 oracle_placed conic_oracle_disturb(const oracle_view *view, const oracle_placed *placed, int i);
-
-#endif

@@ -1,6 +1,5 @@
 /* One splat of the oracle: placed in camera space, given a formula, evaluated at pixels. */
-#ifndef CONIC_ORACLE_SPLAT_H
-#define CONIC_ORACLE_SPLAT_H
+#pragma once
 
 #include "conic/oracle.h"
 #include "oracle/oracle_math.h"
@@ -202,5 +201,3 @@ double conic_oracle_response(const oracle_view *view, const double share[2], dou
 
 /* The direction, from N and M of the page, and what is added for what is round. */
 double conic_oracle_direction(const oracle_view *view, const double share[2], double n, double m, double round);
-
-#endif

@@ -1,7 +1,6 @@
 /* Triangles of the oracle: placed on the screen, and evaluated at pixels by plain double arithmetic, which is exact for
  * the edges. */
-#ifndef CONIC_ORACLE_TRIANGLE_H
-#define CONIC_ORACLE_TRIANGLE_H
+#pragma once
 
 #include "oracle/oracle_pixel.h"
 
@@ -53,5 +52,3 @@ typedef struct oracle_rivals {
 } oracle_rivals;
 void conic_oracle_mesh_rivals(const oracle_mesh *mesh, const oracle_view *view, const uint32_t *which, size_t n,
                               int column, int row, oracle_rivals *rivals);
-
-#endif

@@ -1,6 +1,5 @@
 /* How far the method's weights are from the exact ones, counted. */
-#ifndef CONIC_ORACLE_WEIGHTS_H
-#define CONIC_ORACLE_WEIGHTS_H
+#pragma once
 
 #include "oracle/oracle_pixel.h"
 
@@ -27,5 +26,3 @@ void conic_oracle_weigh(const oracle_view *view, const oracle_exact *exact, doub
 
 void conic_oracle_add_weights(oracle_weighing *to, const oracle_weighing *from);
 conic_weight_error conic_oracle_weight_error(const oracle_weighing *weighing);
-
-#endif

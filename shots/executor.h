@@ -3,8 +3,7 @@
  *
  * Collective functions are called by every process in the same order. A process that fails goes on to the next `agree`;
  * after one that returned a failure no collective function is called any more. */
-#ifndef CONIC_EXECUTOR_H
-#define CONIC_EXECUTOR_H
+#pragma once
 
 #include "core/base/base.h"
 #include "core/base/team.h"
@@ -65,5 +64,3 @@ typedef enum conic_shared_units {
   CONIC_UNITS_SAMPLES = 2,
   CONIC_UNITS_WINDOWS = 3 /* pieces of one picture */
 } conic_shared_units;
-
-#endif

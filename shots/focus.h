@@ -1,6 +1,5 @@
 /* Where a lens is sharp. */
-#ifndef CONIC_FOCUS_H
-#define CONIC_FOCUS_H
+#pragma once
 
 #include "conic/shot.h"
 
@@ -10,5 +9,3 @@ int conic_focus_is_seen(const conic_shot *shot);
 /* The depth at which the shot is sharp, by the plane Z of that picture, where it is looked at. Errors: ARGUMENT (the
  * pixel lies outside), MEMORY. */
 conic_status conic_focus_find(conic_context *context, const conic_shot *shot, const conic_image *middle, double *depth);
-
-#endif

@@ -1,6 +1,5 @@
 /* The samples of a mean, by several processes. */
-#ifndef CONIC_SAMPLES_SHARED_H
-#define CONIC_SAMPLES_SHARED_H
+#pragma once
 
 #include "shots/stage.h"
 
@@ -8,5 +7,3 @@
  * keeper keeps what there is at every power of two. Errors: as conic_accumulate. */
 conic_status conic_accumulate_together(const conic_shot_work *work, const conic_accumulate_options *options,
                                        conic_accumulation *sums);
-
-#endif

@@ -1,8 +1,7 @@
 /* The one table of what decides a picture: every member of a shot and of all within it. The key, the file, what two
  * shots differ in and the schema are made of it. Each member of each struct has a row: it is a field, or it is left out
  * for a reason that its row gives; a test holds that the rows cover the structs. */
-#ifndef CONIC_SHOT_FIELDS_H
-#define CONIC_SHOT_FIELDS_H
+#pragma once
 
 #include "conic/shot_file.h"
 
@@ -69,5 +68,3 @@ typedef union conic_standard {
   unsigned char bytes[CONIC_STANDARD_ROOM];
 } conic_standard;
 void conic_rows_standard(const conic_shot_rows *rows, conic_standard *standard);
-
-#endif

@@ -1,6 +1,5 @@
 /* What a picture is made of: the files that were named, and whatever they led to, with what these hold. */
-#ifndef CONIC_SHOT_INPUTS_H
-#define CONIC_SHOT_INPUTS_H
+#pragma once
 
 #include "conic/shot_file.h"
 
@@ -32,5 +31,3 @@ void conic_shot_inputs_release(conic_context *context, conic_shot_inputs *inputs
 /* What a file holds, or a folder, or the folder of a hierarchy's first file; `input` has its name already. Of more than
  * 64 MiB its length, its time and 64 pieces. Errors: MEMORY, CANCELLED. */
 conic_status conic_shot_input_look(conic_context *context, const char *path, conic_shot_input *input);
-
-#endif

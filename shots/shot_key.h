@@ -1,6 +1,5 @@
 /* Keys: hashes of the fields of shots, and of what files hold. */
-#ifndef CONIC_SHOT_KEY_H
-#define CONIC_SHOT_KEY_H
+#pragma once
 
 #include "conic/shot_file.h"
 #include "core/files/sha256.h"
@@ -18,5 +17,3 @@ void conic_key_add_real(conic_sha256 *sum, double number);
  * a shutter or an eye that there is not, of splats where Gaussian scenes are composited, and so on. `abilities` are the
  * source's, of conic_source_abilities. */
 void conic_shot_file_plain(conic_shot_file *file, unsigned abilities);
-
-#endif

@@ -1,6 +1,5 @@
 /* What a shot of a source comes to: every question about it, answered once. */
-#ifndef CONIC_SHOT_PLAN_H
-#define CONIC_SHOT_PLAN_H
+#pragma once
 
 #include "conic/shot.h"
 
@@ -31,5 +30,3 @@ unsigned conic_shot_needs(const conic_shot *shot, unsigned planes);
 
 /* Whether pictures of a camera are gathered, by the source's abilities. */
 int conic_shot_is_gathered(const conic_shot *shot, unsigned abilities, const conic_camera *camera);
-
-#endif

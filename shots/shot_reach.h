@@ -1,6 +1,5 @@
 /* The box of all that a source draws. */
-#ifndef CONIC_SHOT_REACH_H
-#define CONIC_SHOT_REACH_H
+#pragma once
 
 #include "shots/stage.h"
 
@@ -9,5 +8,3 @@ double conic_splat_reach(const conic_shot_work *work);
 
 /* The box of centres and corners, and what splats reach beyond it. */
 void conic_find_reach(const conic_shot_work *work, double minimum[3], double maximum[3]);
-
-#endif

@@ -1,6 +1,5 @@
 /* Text that grows, and a shot as text: what is written reads back to the bit. */
-#ifndef CONIC_SHOT_TEXT_H
-#define CONIC_SHOT_TEXT_H
+#pragma once
 
 #include "core/files/sha256.h"
 #include "shots/shot_fields.h"
@@ -40,5 +39,3 @@ typedef struct conic_field_visit {
 } conic_field_visit;
 typedef void conic_field_visitor(void *cookie, const conic_field_visit *visit);
 void conic_fields_visit(const conic_shot_file *file, conic_field_visitor *visitor, void *cookie);
-
-#endif

@@ -1,8 +1,7 @@
 /* The stages that draw a shot, one after the other: accumulated, lit, gathered, leaf. Each does one thing to what its
  * next one draws, and leaves out what the plan does without. Views and samples that are lit have the lit stage below
  * the gathered one. No stage calls back. */
-#ifndef CONIC_STAGE_H
-#define CONIC_STAGE_H
+#pragma once
 
 #include "shots/executor.h"
 #include "shots/shot_plan.h"
@@ -96,5 +95,3 @@ conic_status conic_shot_work_draw(conic_shot_work *work, conic_image *image, con
 /* conic_shot_expose by processes that share windows; the first one's exposure counts. */
 conic_status conic_shot_expose_together(conic_source *source, conic_renderer *renderer, const conic_executor *executor,
                                         conic_shared_units units, conic_shot *shot);
-
-#endif

@@ -1,6 +1,5 @@
 /* Which strips of a picture processes draw, one after the other from the top. */
-#ifndef CONIC_STRIP_LIST_H
-#define CONIC_STRIP_LIST_H
+#pragma once
 
 #include "source/source_parts.h"
 
@@ -16,5 +15,3 @@ typedef struct conic_strip {
  * the context's memory. Errors: MEMORY. */
 conic_status conic_list_strips(const conic_source_windows *windows, const conic_strip *kept, size_t n_kept, int step,
                                int most_rows, int n_processes, conic_strip **strips, size_t *n);
-
-#endif

@@ -1,7 +1,6 @@
 /* A picture that nobody holds: drawn in strips, and written row by row, to the EXR file that it would become at once.
  */
-#ifndef CONIC_STRIPS_H
-#define CONIC_STRIPS_H
+#pragma once
 
 #include "shots/stage.h"
 
@@ -33,5 +32,3 @@ const char *conic_strips_stranger(const conic_shot_work *work);
  * picture). */
 conic_status conic_strips_draw(conic_shot_work *work, const conic_camera *camera, const conic_strips_wish *wish,
                                conic_render_statistics *statistics);
-
-#endif

@@ -7,8 +7,7 @@
  * bytes are as they were when it was made: whatever ended the run, and in which order a disk wrote. Behind a head that
  * does not count, none does. A strip is finished if its last record, of no rows, counts, and those of all of its rows.
  */
-#ifndef CONIC_STRIPS_FILE_H
-#define CONIC_STRIPS_FILE_H
+#pragma once
 
 #include "core/files/pile.h"
 #include "core/files/sha256.h"
@@ -70,5 +69,3 @@ conic_status conic_strips_file_get(const conic_strips_file *file, const conic_st
  * pixels. Errors: IO. */
 conic_status conic_strips_file_add(conic_strips_file *file, const conic_strip_piece *piece, const void *bytes,
                                    uint64_t *at);
-
-#endif

@@ -1,7 +1,6 @@
 /* Writes a picture that is drawn in strips, as their rows come: to its file those whose turn it is, and others to a
  * file beside it until then; or, where it is to be gone on with, to OUT.strips (shots/strips_file.h). */
-#ifndef CONIC_STRIPS_WRITER_H
-#define CONIC_STRIPS_WRITER_H
+#pragma once
 
 #include "core/pictures/image_exr_bands.h"
 #include "shots/strip_list.h"
@@ -41,5 +40,3 @@ void conic_strips_writer_take(conic_strips_writer *writer, const void *bytes);
 
 /* Ends what was begun, and with success the file; returns the status. Errors: IO, ARGUMENT. */
 conic_status conic_strips_writer_end(conic_strips_writer *writer, conic_status status);
-
-#endif

@@ -1,6 +1,5 @@
 /* Where camera and scene are while the shutter is open. */
-#ifndef CONIC_WAY_H
-#define CONIC_WAY_H
+#pragma once
 
 #include "conic/shot.h"
 
@@ -14,5 +13,3 @@ conic_status conic_camera_move_eye(conic_context *context, const conic_stereo_ey
 conic_status conic_shot_move(const conic_shot *shot, conic_source *source, double time);
 /* Brings them to rest. */
 void conic_shot_rest(const conic_shot *shot, conic_source *source);
-
-#endif

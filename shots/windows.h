@@ -1,6 +1,5 @@
 /* One picture by several processes, in windows. */
-#ifndef CONIC_WINDOWS_H
-#define CONIC_WINDOWS_H
+#pragma once
 
 #include "shots/stage.h"
 #include "source/source_parts.h"
@@ -29,5 +28,3 @@ conic_status conic_windows_sum(const conic_shot_work *work, conic_source_windows
  * process. The others' image may be without planes, and stays as it is. */
 conic_status conic_windows_draw_together(const conic_shot_work *work, const conic_look *look, conic_image *image,
                                          conic_render_statistics *statistics);
-
-#endif

@@ -1,7 +1,6 @@
 /* Sources that move as one piece: instead of the source, the camera and the lights that stand in the world move the
  * other way. */
-#ifndef CONIC_CARRIED_H
-#define CONIC_CARRIED_H
+#pragma once
 
 #include "source/source_kind.h"
 
@@ -16,5 +15,3 @@ void conic_carried_look(const conic_source *source, const conic_camera *camera, 
 
 /* Turns the normals of a picture that *rest_camera drew into the world. */
 void conic_carried_turn(const conic_source *source, conic_image *image);
-
-#endif

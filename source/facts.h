@@ -1,6 +1,5 @@
 /* Putting facts together: CONIC_ADD_FACTS(facts, CONIC_COUNT("points", n), …). */
-#ifndef CONIC_FACTS_H
-#define CONIC_FACTS_H
+#pragma once
 
 #include "conic/source.h"
 #include "core/base/message.h"
@@ -36,5 +35,3 @@ void conic_facts_add(conic_facts *facts, const conic_fact *more, size_t n);
 
 /* The object "bounds", and its line. */
 void conic_facts_add_bounds(conic_facts *facts, const double low[3], const double high[3]);
-
-#endif

@@ -1,6 +1,5 @@
 /* Meshes from files: what every mesh needs, and a texture in place of its own. */
-#ifndef CONIC_MESH_INPUT_H
-#define CONIC_MESH_INPUT_H
+#pragma once
 
 #include "conic/hybrid.h"
 
@@ -48,5 +47,3 @@ void conic_hybrid_input_release(conic_context *context, conic_hybrid_input *inpu
 conic_status conic_hybrid_input_build(conic_context *context, conic_hybrid_input *input,
                                       const conic_hybrid_options *options, conic_hybrid **hybrid,
                                       conic_hybrid_report *report);
-
-#endif

@@ -1,6 +1,5 @@
 /* Splats and triangles in another place, or of another shape, than they were read in. */
-#ifndef CONIC_MOVED_DRAWING_H
-#define CONIC_MOVED_DRAWING_H
+#pragma once
 
 #include "conic/source.h"
 
@@ -24,5 +23,3 @@ int conic_moved_fits(const conic_drawing_range *range, const conic_drawing *shap
 /* Moves a range of the drawing at rest as the pose says; a null pose leaves it at rest. */
 void conic_moved_put(conic_context *context, const conic_drawing *rest, const conic_drawing_range *range,
                      const conic_source_pose *pose, const conic_splats *splats, const conic_triangles *triangles);
-
-#endif

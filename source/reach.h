@@ -1,6 +1,5 @@
 /* How far out points may be for a scene to be framed or kept. */
-#ifndef CONIC_REACH_H
-#define CONIC_REACH_H
+#pragma once
 
 #include "conic/splats.h"
 
@@ -19,5 +18,3 @@ static inline const char *conic_why_out_of_reach(const conic_splats *points) {
     return points->count ? "no point is finite" : "it holds no points";
   return conic_is_in_reach(low, high) ? NULL : "a point is farther out than 1e20";
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* Files of splats of which each process of a team reads a part. For a picture, it then holds the splats that its
  * windows need. */
-#ifndef CONIC_SHARED_SOURCE_H
-#define CONIC_SHARED_SOURCE_H
+#pragma once
 
 #include "conic/source.h"
 #include "core/base/team.h"
@@ -13,5 +12,3 @@
  * must exist until the source is closed. Errors: as conic_source_open, CANCELLED. */
 conic_status conic_source_open_shared(conic_context *context, const conic_team *team, const char *const *paths,
                                       size_t n_paths, const conic_source_options *options, conic_source **source);
-
-#endif

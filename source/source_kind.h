@@ -1,6 +1,5 @@
 /* A kind of source: one file that fills in this table, and one line in the list of source/source.c. */
-#ifndef CONIC_SOURCE_KIND_H
-#define CONIC_SOURCE_KIND_H
+#pragma once
 
 #include "core/pictures/georeference.h"
 #include "core/splats/shares.h"
@@ -151,5 +150,3 @@ conic_status conic_source_color(conic_source *source, const conic_source_options
 /* conic_source_inspect of a file that is read as a model, or as a Gaussian scene. */
 conic_status conic_model_inspect(conic_context *context, const char *path, int is_checked, conic_facts *facts);
 conic_status conic_gaussians_inspect(conic_context *context, const char *path, int is_checked, conic_facts *facts);
-
-#endif

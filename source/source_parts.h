@@ -1,6 +1,5 @@
 /* A picture drawn in windows, each with the bits of the whole, by several processes that each draw only some. */
-#ifndef CONIC_SOURCE_PARTS_H
-#define CONIC_SOURCE_PARTS_H
+#pragma once
 
 #include "conic/source.h"
 #include "raster/view/part.h"
@@ -85,5 +84,3 @@ void conic_source_windows_weigh(const conic_source_windows *windows, const conic
  * may be null. */
 void conic_source_windows_weigh_places(const conic_source_windows *windows, float *const columns[3], size_t count,
                                        const double origin[3], const conic_window *list, size_t n, double *weights);
-
-#endif

@@ -1,6 +1,5 @@
 /* Samples of the surface of a source that hands nothing over. */
-#ifndef CONIC_SOURCE_SAMPLES_H
-#define CONIC_SOURCE_SAMPLES_H
+#pragma once
 
 #include "source/source_kind.h"
 
@@ -16,5 +15,3 @@ void conic_source_limit_samples(conic_source *source, double seconds);
  * conic_source_stand and conic_source_fit will use; each process takes those of some sides. Does nothing where the
  * source hands everything over, or the team is null. Errors: as those of conic_source_take_samples, CANCELLED. */
 conic_status conic_source_share_samples(conic_source *source, const conic_team *team, conic_status status);
-
-#endif

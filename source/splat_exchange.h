@@ -1,6 +1,5 @@
 /* Splats that are sent between the processes of a team. */
-#ifndef CONIC_SPLAT_EXCHANGE_H
-#define CONIC_SPLAT_EXCHANGE_H
+#pragma once
 
 #include "core/splats/shares.h"
 
@@ -10,5 +9,3 @@
  * success the caller releases both; on failure they are empty. Errors: MEMORY, CANCELLED. */
 conic_status conic_splats_exchange(conic_context *context, const conic_splats_shares *shares, const conic_splats *from,
                                    const size_t *begin, const uint32_t *list, conic_splats *to, uint32_t **ids);
-
-#endif

@@ -4,8 +4,7 @@
  * (x·(D - z)/D, y·(D - z)/D, z). There the pinhole of focal length D / pixel sees it at x / pixel, y / pixel, as the
  * parallel projection does, at any height. Tangents move by the derivative of this map. So centres are where they
  * belong, and outlines are off by at most the share radius / D of themselves. */
-#ifndef CONIC_TOP_LIFT_H
-#define CONIC_TOP_LIFT_H
+#pragma once
 
 #include "conic/splats.h"
 
@@ -55,5 +54,3 @@ void conic_top_bins_release(conic_context *context, conic_top_bins *bins);
  * the next call. Errors: MEMORY. */
 conic_status conic_top_bins_find(conic_context *context, conic_top_bins *bins, const double low[2],
                                  const double high[2], size_t *n);
-
-#endif

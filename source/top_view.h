@@ -3,8 +3,7 @@
  * Pixels are squares of the ground, counted from the world's origin: column c is x from c·pixel to (c+1)·pixel, row r
  * is y from -r·pixel down to -(r+1)·pixel. Blocks are squares of pixels, counted the same way. A block depends on the
  * source, the pixel and the options alone. So two pictures have the same bits wherever they show the same ground. */
-#ifndef CONIC_TOP_VIEW_H
-#define CONIC_TOP_VIEW_H
+#pragma once
 
 #include "conic/source.h"
 #include "core/pictures/georeference.h"
@@ -36,5 +35,3 @@ void conic_top_view_close(conic_top_view *top);
  * conic_source_draw. */
 conic_status conic_top_view_draw(conic_top_view *top, int64_t column, int64_t row, conic_image *image,
                                  conic_render_statistics *sum);
-
-#endif

@@ -1,6 +1,5 @@
 /* Which way up a model stands, if its shape tells. */
-#ifndef CONIC_UPRIGHT_H
-#define CONIC_UPRIGHT_H
+#pragma once
 
 #include "conic/source.h"
 #include "core/splats/shares.h"
@@ -9,5 +8,3 @@
  * the splats are shared; there are no triangles then. Errors: MEMORY, CANCELLED. */
 conic_status conic_upright_look(conic_context *context, const conic_splats_shares *shares, const conic_drawing *drawing,
                                 conic_up_basis *basis);
-
-#endif

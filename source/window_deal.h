@@ -1,6 +1,5 @@
 /* Deals the windows of a picture to processes that each know only the places of their own splats. */
-#ifndef CONIC_WINDOW_DEAL_H
-#define CONIC_WINDOW_DEAL_H
+#pragma once
 
 #include "core/splats/shares.h"
 #include "raster/project/projected.h"
@@ -25,5 +24,3 @@ conic_status conic_windows_deal(conic_context *context, const conic_dealing *dea
  * 1]; `begin` has room for one more than there are processes. On success the caller releases *list. Errors: MEMORY. */
 conic_status conic_windows_list_splats(conic_context *context, const conic_dealing *dealing, const int *owners,
                                        size_t *begin, uint32_t **list);
-
-#endif

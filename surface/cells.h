@@ -1,6 +1,5 @@
 /* The cells of a lattice that hold points, and how many. */
-#ifndef CONIC_CELLS_H
-#define CONIC_CELLS_H
+#pragma once
 
 #include "core/base/base.h"
 #include "core/base/team.h"
@@ -61,5 +60,3 @@ typedef struct conic_cells_share {
  * kept points. Errors: MEMORY. */
 conic_status conic_cells_share_out(conic_cells *cells, const conic_team *team, conic_cells_share *share);
 void conic_cells_share_end(conic_context *context, conic_cells_share *share);
-
-#endif

@@ -1,7 +1,6 @@
 /* Results of points that are projected cell by cell, by their number in the set. In a team, the first process gets them
  * all from the others. */
-#ifndef CONIC_CELLS_RESULTS_H
-#define CONIC_CELLS_RESULTS_H
+#pragma once
 
 #include "core/base/team.h"
 #include "core/files/scratch.h"
@@ -60,5 +59,3 @@ conic_status conic_cells_results_keep(conic_cells_results *results, uint64_t fir
 /* Collective in a team: brings all results to the first process. Errors: MEMORY, IO; they are this process's own until
  * the caller makes the team agree. */
 conic_status conic_cells_results_bring(conic_cells_results *results);
-
-#endif

@@ -1,6 +1,5 @@
 /* Darts: places in triangles without a point nearby, found by trying a fine lattice in each triangle. */
-#ifndef CONIC_DARTS_H
-#define CONIC_DARTS_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -48,5 +47,3 @@ double conic_dart_reach(const conic_dart_triangle *triangle);
  * most `limit` in all. Errors: MEMORY. */
 conic_status conic_darts_throw(conic_dart_board *board, const conic_dart_triangle *triangle, uint32_t number,
                                size_t limit, conic_darts *darts);
-
-#endif

@@ -1,6 +1,5 @@
 /* The triangles that say where a set's surface is: its own, or those that its points make with their neighbours. */
-#ifndef CONIC_DENSIFY_TRIANGLES_H
-#define CONIC_DENSIFY_TRIANGLES_H
+#pragma once
 
 #include "surface/darts.h"
 #include "surface/mls_surface.h"
@@ -22,5 +21,3 @@ void conic_densify_triangles_release(conic_context *context, conic_densify_trian
 
 /* Triangle i, with its normals on the samples' side. It is bent where its corners' normals agree with its own. */
 void conic_densify_triangle(const conic_densify_triangles *triangles, size_t i, conic_dart_triangle *triangle);
-
-#endif

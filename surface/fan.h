@@ -1,6 +1,5 @@
 /* A point's fan: the triangles that it makes with pairs of its neighbours, seen in its tangent plane. */
-#ifndef CONIC_FAN_H
-#define CONIC_FAN_H
+#pragma once
 
 #include "core/estimate/neighbours.h"
 
@@ -16,5 +15,3 @@ typedef struct conic_fan {
  * way belong to another sheet. */
 void conic_fan_find(const conic_neighbours *tree, float *const normals[3], uint32_t slot, const double normal[3],
                     double most, conic_fan *fan);
-
-#endif

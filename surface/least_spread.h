@@ -1,9 +1,6 @@
 /* The direction in which samples spread least. */
-#ifndef CONIC_LEAST_SPREAD_H
-#define CONIC_LEAST_SPREAD_H
+#pragma once
 
 /* A right-handed frame whose third row is the unit eigenvector of the least eigenvalue of the covariance {xx, xy, xz,
  * yy, yz, zz}. For equal eigenvalues it is any of their eigenvectors. */
 void conic_least_spread(const double covariance[6], double frame[3][3]);
-
-#endif

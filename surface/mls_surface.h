@@ -1,6 +1,5 @@
 /* A surface's members, and the functions that its parts share. */
-#ifndef CONIC_MLS_SURFACE_H
-#define CONIC_MLS_SURFACE_H
+#pragma once
 
 #include "core/estimate/neighbours.h"
 #include "surface/loops/surface_loops.h"
@@ -158,5 +157,3 @@ void conic_creases_release(conic_surface *surface);
  * is only one piece, returns 0; only the workspace's neighbours are then changed. */
 int conic_creases_project(const conic_surface *surface, const double r[3], double h, uint32_t except,
                           conic_workspace *workspace, conic_landing *landing);
-
-#endif

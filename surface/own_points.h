@@ -1,6 +1,5 @@
 /* Projects a surface's own points. */
-#ifndef CONIC_OWN_POINTS_H
-#define CONIC_OWN_POINTS_H
+#pragma once
 
 #include "surface/mls_surface.h"
 
@@ -27,5 +26,3 @@ typedef struct conic_own_points {
 conic_status conic_own_points_project(const conic_surface *surface, const conic_own_range *wanted, double from,
                                       double to, conic_own_points *own);
 void conic_own_points_release(conic_context *context, conic_own_points *own);
-
-#endif

@@ -1,7 +1,6 @@
 /* What compares the loops' families with plain C, and times them: memory between guard bands, desks that have some,
  * slots that run on a desk. */
-#ifndef CONIC_CROSS_H
-#define CONIC_CROSS_H
+#pragma once
 
 #include "bench/loops/cross_all.h"
 #include "lod/octree/octree_loops.h"
@@ -159,5 +158,3 @@ static inline void cross_try(cross *c, const cross_slot *slot, cross_desk *const
     cross_print(slot, c->tables[i].isa, ns, plain);
   }
 }
-
-#endif

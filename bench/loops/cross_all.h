@@ -1,6 +1,5 @@
 /* All loops beside plain C: for the test `cross` and for `conic bench --kernels`. */
-#ifndef CONIC_CROSS_ALL_H
-#define CONIC_CROSS_ALL_H
+#pragma once
 
 #include <stdint.h>
 
@@ -9,5 +8,3 @@
 /* Prints the seed and compares, or compares less and prints times, which end where something failed. Returns how much
  * failed. */
 int cli_cross_all(uint64_t seed, int is_bench);
-
-#endif

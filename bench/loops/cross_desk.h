@@ -1,7 +1,6 @@
 /* The desk of splats: all that the slots of set-up, sorting, passes and resolving read and write; and the splats that
  * are set out. */
-#ifndef CONIC_CROSS_DESK_H
-#define CONIC_CROSS_DESK_H
+#pragma once
 
 #include "bench/loops/cross.h"
 #include "raster/tiles/lights.h"
@@ -200,5 +199,3 @@ static inline splat_desk *open_desk(const fixture *f, unsigned planes) {
   open_image(d, planes);
   return d;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* What the peers in C share: splats and camera as `run` gives them, times, and the picture. */
-#ifndef CONIC_PEER_SCENE_H
-#define CONIC_PEER_SCENE_H
+#pragma once
 
 #include <math.h>
 #include <stdio.h>
@@ -82,5 +81,3 @@ static void fill_linear(float linear_of[256]) {
   for (int i = 0; i < 256; i++)
     linear_of[i] = i <= 10 ? (float)i / 255.0f / 12.92f : powf(((float)i / 255.0f + 0.055f) / 1.055f, 2.4f);
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Colours that a command makes and keeps in its output. */
-#ifndef CONIC_BUILD_COLORING_H
-#define CONIC_BUILD_COLORING_H
+#pragma once
 
 #include "cli/color_options.h"
 #include "cli/commands/build_steps.h"
@@ -41,5 +40,3 @@ conic_status cli_coloring_apply(cli_build *build, cli_coloring *coloring, const 
  * Collective. Errors: as conic_model_stream. */
 conic_status cli_coloring_find_range(cli_coloring *coloring, const cli_points_share *share,
                                      const conic_read_options *reading);
-
-#endif

@@ -1,6 +1,5 @@
 /* What commands that make one file from another share: their arguments, their steps, and their messages. */
-#ifndef CONIC_BUILD_STEPS_H
-#define CONIC_BUILD_STEPS_H
+#pragma once
 
 #include "cli/option_check.h"
 #include "cli/team_report.h"
@@ -75,5 +74,3 @@ double cli_build_end_stage(cli_stage *stage, double start);
 
 /* Writes the object "seconds", the rate of the work under `rate_key`, and the memory. */
 void cli_build_report_cost(cli_json *json, const cli_build *build, const char *rate_key, double rate);
-
-#endif

@@ -1,6 +1,5 @@
 /* One `conic diff`: of two images, or of two folders of images, view by view. */
-#ifndef CONIC_DIFF_JOB_H
-#define CONIC_DIFF_JOB_H
+#pragma once
 
 #include "cli/json_write.h"
 #include "cli/session.h"
@@ -51,5 +50,3 @@ int cli_diff_is_many(const char *path);
 
 /* Compares two folders or patterns. Returns the exit code, after a message. The session is open. */
 int cli_diff_folders(cli_diff_job *job);
-
-#endif

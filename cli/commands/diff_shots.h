@@ -1,6 +1,5 @@
 /* What two pictures say of how they were made, where both do. */
-#ifndef CONIC_DIFF_SHOTS_H
-#define CONIC_DIFF_SHOTS_H
+#pragma once
 
 #include "cli/json_write.h"
 #include "cli/session.h"
@@ -17,5 +16,3 @@ void cli_diff_shots_release(const cli_session *session, cli_diff_shots *shots);
 conic_status cli_diff_shots_report(cli_json *json, const cli_session *session, const cli_diff_shots *shots);
 /* The same on standard output, a line each. */
 void cli_diff_shots_print(const cli_session *session, const cli_diff_shots *shots);
-
-#endif

@@ -1,6 +1,5 @@
 /* The pictures of two folders or patterns, and which of them show the same view. */
-#ifndef CONIC_DIFF_VIEWS_H
-#define CONIC_DIFF_VIEWS_H
+#pragma once
 
 #include "cli/commands/diff_job.h"
 
@@ -34,5 +33,3 @@ typedef struct cli_diff_views {
  * exit code, after a message. */
 int cli_diff_views_find(const cli_diff_job *job, cli_diff_views *views);
 void cli_diff_views_release(cli_diff_views *views);
-
-#endif

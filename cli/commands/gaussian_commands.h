@@ -1,6 +1,5 @@
 /* conic verify and conic explain for Gaussian scenes that are composited by a profile. */
-#ifndef CONIC_GAUSSIAN_COMMANDS_H
-#define CONIC_GAUSSIAN_COMMANDS_H
+#pragma once
 
 #include "cli/scene/render_job.h"
 
@@ -27,5 +26,3 @@ int cli_verify_composited(cli_session *session, cli_render_job *scene, size_t n_
 int cli_explain_composited(cli_session *session, cli_render_job *scene, int x, int y);
 /* Writes the object "planes": a pixel as it is drawn, of either kind of scene. */
 void cli_explain_planes(cli_json *json, const conic_image *image, int x, int y);
-
-#endif

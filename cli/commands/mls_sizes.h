@@ -1,6 +1,5 @@
 /* Ellipses for the points that conic mls writes. */
-#ifndef CONIC_MLS_SIZES_H
-#define CONIC_MLS_SIZES_H
+#pragma once
 
 #include "conic/model.h"
 
@@ -16,5 +15,3 @@ conic_status cli_mls_size_thinned(conic_context *context, const conic_model *fro
 
 /* Gives points their ellipses, with clip lines at creases over 30°. Errors: MEMORY, CANCELLED. */
 conic_status cli_mls_size_sharp(conic_context *context, conic_splats *points);
-
-#endif

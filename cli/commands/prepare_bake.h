@@ -1,6 +1,5 @@
 /* conic prepare --bake: computes the light from all around at the points themselves. */
-#ifndef CONIC_PREPARE_BAKE_H
-#define CONIC_PREPARE_BAKE_H
+#pragma once
 
 #include "cli/arguments.h"
 
@@ -13,5 +12,3 @@ int cli_bake_parse(const char *text, void *value);
  * conic_splats_occlude. */
 conic_status cli_bake_splats(conic_context *context, cli_bake bake, int n_directions, float cutoff,
                              conic_splats *splats);
-
-#endif

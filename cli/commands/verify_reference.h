@@ -1,6 +1,5 @@
 /* The oracle's reference of a scene of splats and triangles, for conic verify and conic judge. */
-#ifndef CONIC_VERIFY_REFERENCE_H
-#define CONIC_VERIFY_REFERENCE_H
+#pragma once
 
 #include "cli/scene/render_job.h"
 
@@ -30,5 +29,3 @@ typedef struct cli_mean_verdict {
  * drawn into it here, and then each sample, too. `n_pixels` as in verify. */
 conic_status cli_verify_mean(cli_session *session, cli_render_job *scene, size_t n_pixels, const char *image_path,
                              conic_image *image, cli_mean_verdict *result);
-
-#endif

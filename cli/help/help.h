@@ -1,7 +1,6 @@
 /* What the program says of itself, all of it from the commands' tables of options: text, manual pages, completion of
  * three shells, JSON. */
-#ifndef CONIC_HELP_H
-#define CONIC_HELP_H
+#pragma once
 
 #include "cli/arguments.h"
 #include "cli/command.h"
@@ -59,5 +58,3 @@ typedef struct cli_help_row {
 } cli_help_row;
 
 extern const cli_help_row cli_help_exit_codes[], cli_help_variables[];
-
-#endif

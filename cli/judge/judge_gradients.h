@@ -1,6 +1,5 @@
 /* conic judge --gradients: judges another program's derivative of a picture. */
-#ifndef CONIC_JUDGE_GRADIENTS_H
-#define CONIC_JUDGE_GRADIENTS_H
+#pragma once
 
 #include "cli/arguments.h"
 
@@ -25,5 +24,3 @@ typedef struct cli_gradient_files {
 
 /* The command, where --gradients is among its arguments; returns the exit code. */
 int cli_gradients_run(cli_session *session, int argc, char **argv);
-
-#endif

@@ -1,6 +1,5 @@
 /* One `conic judge`: its arguments and its results. */
-#ifndef CONIC_JUDGE_JOB_H
-#define CONIC_JUDGE_JOB_H
+#pragma once
 
 #include "cli/scene/render_job.h"
 
@@ -97,5 +96,3 @@ void cli_judge_members(cli_json *json, const void *job);
 /* What a fault's value is and may be, and what a contribution is, in one line each. */
 void cli_judge_describe(const cli_judge_job *job, const conic_oracle_fault *fault, char *text, size_t room);
 void cli_judge_describe_part(const cli_judge_part *part, char *text, size_t room);
-
-#endif

@@ -1,6 +1,5 @@
 /* A page of HTML in one file, with escaped text, and pictures inside as PNG. */
-#ifndef CONIC_JUDGE_PAGE_H
-#define CONIC_JUDGE_PAGE_H
+#pragma once
 
 #include "cli/session.h"
 
@@ -15,5 +14,3 @@ void cli_page_text(const cli_page *page, const char *text);
 /* A <figure> of an rgba image, sRGB-encoded, so many screen pixels wide; small images are enlarged by a whole
  * number. */
 conic_status cli_page_picture(const cli_page *page, const conic_image *image, int screen_px, const char *caption);
-
-#endif

@@ -1,6 +1,5 @@
 /* The files of a suite: writing them, and the list of all with sizes and hashes. */
-#ifndef CONIC_SUITE_FILES_H
-#define CONIC_SUITE_FILES_H
+#pragma once
 
 #include "cli/judge/suite_scenes.h"
 #include "core/files/sha256.h"
@@ -47,5 +46,3 @@ void cli_suite_release_content(conic_context *context, suite_content *content);
  * files. */
 conic_status cli_suite_write_scene(suite_files *suite, const suite_scene *scene, suite_content *content);
 conic_status cli_suite_write_camera(suite_files *suite, const suite_scene *scene);
-
-#endif

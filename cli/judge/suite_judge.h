@@ -1,6 +1,5 @@
 /* conic judge --suite: compares pictures of a suite's cases with the suite's bounds. */
-#ifndef CONIC_SUITE_JUDGE_H
-#define CONIC_SUITE_JUDGE_H
+#pragma once
 
 #include "cli/json_write.h"
 #include "cli/judge/suite_manifest.h"
@@ -74,5 +73,3 @@ conic_status cli_suite_write_junit(const suite_run *run);
 
 /* The command, where --suite is among its arguments; returns the exit code. */
 int cli_suite_run(cli_session *session, int argc, char **argv);
-
-#endif

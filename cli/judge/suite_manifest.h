@@ -1,6 +1,5 @@
 /* A suite's manifest, as far as judging needs it. */
-#ifndef CONIC_SUITE_MANIFEST_H
-#define CONIC_SUITE_MANIFEST_H
+#pragma once
 
 #include "core/files/json_read.h"
 #include "core/files/sha256.h"
@@ -27,5 +26,3 @@ typedef struct suite_manifest {
  * MEMORY. */
 conic_status cli_suite_read_manifest(conic_context *context, const char *path, suite_manifest *manifest);
 void cli_suite_release_manifest(conic_context *context, suite_manifest *manifest);
-
-#endif

@@ -1,8 +1,7 @@
 /* A suite's expectations of a picture, and the files that hold them.
  *
  * Numbers are floats, in the order [range][y][x][channel], as in the .npy. */
-#ifndef CONIC_SUITE_PLANES_H
-#define CONIC_SUITE_PLANES_H
+#pragma once
 
 #include "conic/gaussian_judge.h"
 
@@ -44,5 +43,3 @@ conic_status cli_suite_write_npy(conic_context *context, const char *path, const
  * INPUT, MEMORY. */
 conic_status cli_suite_take_npy(conic_context *context, const char *path, const unsigned char *bytes, size_t n_bytes,
                                 suite_planes *planes);
-
-#endif

@@ -1,6 +1,5 @@
 /* The scenes of the conformance suite: what each tests, how it is seen, and which profiles draw it. */
-#ifndef CONIC_SUITE_SCENES_H
-#define CONIC_SUITE_SCENES_H
+#pragma once
 
 #include "conic/gaussian_render.h"
 
@@ -38,5 +37,3 @@ extern const int cli_n_suite_scenes;
 const char *cli_suite_level_about(int level);
 
 void cli_suite_camera(const suite_scene *scene, conic_camera *camera);
-
-#endif

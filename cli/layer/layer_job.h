@@ -1,6 +1,5 @@
 /* The job of conic layer and conic merge, whose steps are in separate files: continuing a file, and reading inputs. */
-#ifndef CONIC_LAYER_JOB_H
-#define CONIC_LAYER_JOB_H
+#pragma once
 
 #include "cli/commands/build_coloring.h"
 
@@ -68,5 +67,3 @@ uint64_t cli_layer_most_whole(const cli_layer_job *job);
 void cli_layer_reading(const cli_layer_job *job, conic_read_options *options);
 /* Appends this process's share to the builder. Errors: as conic_model_stream and conic_layers_builder_append. */
 conic_status cli_layer_read_share(cli_layer_job *job, conic_read_options *options);
-
-#endif

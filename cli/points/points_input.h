@@ -1,6 +1,5 @@
 /* Points to build from: a model's, or those of another kind's hierarchy, which may be on a web server. */
-#ifndef CONIC_POINTS_INPUT_H
-#define CONIC_POINTS_INPUT_H
+#pragma once
 
 #include "conic/gaussians.h"
 #include "core/base/base.h"
@@ -27,5 +26,3 @@ conic_status cli_points_read(conic_context *context, const char *path, const con
  * MEMORY. */
 conic_status cli_points_folder_list(conic_context *context, const char *path, char **names, size_t *n_bytes,
                                     size_t *room);
-
-#endif

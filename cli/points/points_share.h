@@ -1,7 +1,6 @@
 /* The points of many inputs that several processes read together (cli/session_team.h). Each has a consecutive part; in
  * the order of the processes, the points come as for a single process. A process alone has all. */
-#ifndef CONIC_POINTS_SHARE_H
-#define CONIC_POINTS_SHARE_H
+#pragma once
 
 #include "cli/session_team.h"
 #include "core/formats/model_part.h"
@@ -47,5 +46,3 @@ conic_status cli_points_share_out(cli_points_share *share, const conic_read_opti
 /* cli_points_stream for one of this process's pieces. */
 conic_status cli_points_share_stream(const cli_points_share *share, const cli_points_piece *piece,
                                      const conic_read_options *options, conic_batch_receiver *receive, void *cookie);
-
-#endif

@@ -1,6 +1,5 @@
 /* What of a shot the options leave open, once the scene is known: each frame's camera, lights and moment. */
-#ifndef CONIC_FILL_SHOT_H
-#define CONIC_FILL_SHOT_H
+#pragma once
 
 #include "cli/scene/render_job.h"
 
@@ -13,5 +12,3 @@ conic_status cli_shot_fill(cli_session *session, cli_render_job *job, int i_fram
 
 /* --exposure auto: finds it where it is still to be found, for this frame and those that follow. */
 conic_status cli_choose_exposure(cli_render_job *job);
-
-#endif

@@ -1,7 +1,6 @@
 /* What is written of a frame: the picture, with what it says of itself, and pictures of how and of what it was drawn.
  */
-#ifndef CONIC_FRAME_FILES_H
-#define CONIC_FRAME_FILES_H
+#pragma once
 
 #include "cli/scene/render_job.h"
 
@@ -19,5 +18,3 @@ conic_status cli_frame_files_write(cli_session *session, cli_render_job *job, co
 char *cli_sums_name(const cli_render_job *job, int i_frame);
 /* Removes it, if it is there: the frame is finished. */
 void cli_sums_forget(const cli_render_job *job, int i_frame);
-
-#endif

@@ -1,7 +1,6 @@
 /* The frames of a turntable, or the views of a file: which are drawn, what their files are called, and where the
  * cameras stand. */
-#ifndef CONIC_FRAMES_H
-#define CONIC_FRAMES_H
+#pragma once
 
 #include "cli/scene/render_job.h"
 
@@ -27,5 +26,3 @@ int cli_frames_count(const cli_render_job *job);
  * "name.0001.exr", and "name_%03d.exr" becomes "name_001.exr"; views are
  * counted from 0, and of these "%s.exr" is the view's own name. Of two eyes, cli_stereo_name comes on top. */
 char *cli_frame_name(const cli_render_job *job, const char *path, int i_frame);
-
-#endif

@@ -1,8 +1,7 @@
 /* --resumable and --resume of several frames: which are finished stands in OUT.frames (core/files/finished.h),
  * which the first process of a team writes for all. A frame is finished when its files are there and have the hashes
  * that they were written with. */
-#ifndef CONIC_KEPT_FRAMES_H
-#define CONIC_KEPT_FRAMES_H
+#pragma once
 
 #include "cli/scene/render_job.h"
 
@@ -32,5 +31,3 @@ void cli_kept_frames_release(cli_session *session, cli_render_job *job);
 
 /* Of one picture: wrong usage where it is drawn at once, so that nothing of it could be kept. */
 conic_status cli_refuse_kept_picture(const cli_render_job *job);
-
-#endif

@@ -1,6 +1,5 @@
 /* The lens and the shutter of pictures that are means of samples; and single samples, which commands ask about. */
-#ifndef CONIC_SAMPLE_OPTIONS_H
-#define CONIC_SAMPLE_OPTIONS_H
+#pragma once
 
 #include "cli/render/frames.h"
 
@@ -82,5 +81,3 @@ int cli_sample_frame(const cli_render_job *job);
 
 /* The camera of the picture that is looked at: of the sample that is asked for, or else of the frame. */
 conic_status cli_sample_camera(cli_session *session, cli_render_job *job, conic_camera *camera);
-
-#endif

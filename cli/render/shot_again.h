@@ -1,8 +1,7 @@
 /* Drawing again what a shot or a picture says: conic render F.shot.json, and --again PICTURE. What it says becomes the
  * options' values and words before they are read, so that all rules about them hold; what no option says is put in its
  * place when a frame's shot is filled. */
-#ifndef CONIC_SHOT_AGAIN_H
-#define CONIC_SHOT_AGAIN_H
+#pragma once
 
 #include "cli/scene/render_job.h"
 
@@ -28,5 +27,3 @@ void cli_shot_again_fill(cli_render_job *job);
 conic_status cli_shot_again_check(cli_session *session, cli_render_job *job);
 
 void cli_shot_again_release(cli_session *session, cli_shot_again *again);
-
-#endif

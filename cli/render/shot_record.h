@@ -1,6 +1,5 @@
 /* All that decides the picture that a job draws, as a value: for its key, for files, and for the picture itself. */
-#ifndef CONIC_SHOT_RECORD_H
-#define CONIC_SHOT_RECORD_H
+#pragma once
 
 #include "cli/scene/render_job.h"
 
@@ -28,5 +27,3 @@ conic_status cli_shot_describe(cli_session *session, cli_render_job *job);
 conic_status cli_shot_save(cli_session *session, cli_render_job *job, int i_frame);
 
 void cli_shot_release(cli_session *session, cli_render_job *job);
-
-#endif

@@ -1,6 +1,5 @@
 /* Pictures that are too large to be held: they are drawn in strips (shots/strips.h), where they can be. */
-#ifndef CONIC_STRIP_PICTURES_H
-#define CONIC_STRIP_PICTURES_H
+#pragma once
 
 #include "cli/scene/render_job.h"
 
@@ -18,5 +17,3 @@ conic_status cli_refuse_too_large(const cli_session *session, const cli_render_j
  * kept until it is whole. Errors: as conic_strips_draw; MEMORY. */
 conic_status cli_render_in_strips(cli_session *session, cli_render_job *job, int i_frame, const conic_camera *camera,
                                   conic_render_statistics *statistics);
-
-#endif

@@ -1,7 +1,6 @@
 /* Which units a team (cli/session_team.h) shares of one `conic render`: frames one by one, or of each frame the samples
  * or the windows; and the executor by which it does. */
-#ifndef CONIC_UNITS_H
-#define CONIC_UNITS_H
+#pragma once
 
 #include "cli/scene/render_job.h"
 #include "shots/stage.h"
@@ -53,5 +52,3 @@ void cli_frame_turns_did(const cli_frame_turns *turns, int i, conic_moment since
 /* Collective, after success: what each process had to do with it, for the report. */
 void cli_units_gather(const cli_session *session, cli_render_job *job);
 void cli_units_report(cli_json *json, const cli_render_job *job);
-
-#endif

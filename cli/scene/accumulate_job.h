@@ -1,6 +1,5 @@
 /* Pictures that are the mean of many samples: --accumulate and what goes with it. */
-#ifndef CONIC_ACCUMULATE_JOB_H
-#define CONIC_ACCUMULATE_JOB_H
+#pragma once
 
 #include "cli/arguments.h"
 #include "cli/json_write.h"
@@ -56,5 +55,3 @@ conic_status cli_accumulate_picture(cli_session *session, struct cli_render_job 
 void cli_accumulate_describe(const struct cli_render_job *job, conic_image *image);
 
 void cli_accumulate_report(cli_json *json, const struct cli_render_job *job);
-
-#endif

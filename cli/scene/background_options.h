@@ -1,6 +1,5 @@
 /* What is behind a picture, besides the one colour that the renderer puts there: a gradient from top to bottom. */
-#ifndef CONIC_BACKGROUND_OPTIONS_H
-#define CONIC_BACKGROUND_OPTIONS_H
+#pragma once
 
 #include "cli/scene/render_job.h"
 
@@ -16,5 +15,3 @@ int cli_backdrop_is_studio(const cli_render_job *job);
 
 /* The key "background" of the statistics. */
 void cli_backdrop_report(cli_json *json, const cli_render_job *job);
-
-#endif

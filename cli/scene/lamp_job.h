@@ -1,6 +1,5 @@
 /* Lights that have a size or a place: --light with a radius, and lamps. */
-#ifndef CONIC_LAMP_JOB_H
-#define CONIC_LAMP_JOB_H
+#pragma once
 
 #include "cli/json_write.h"
 #include "cli/session.h"
@@ -36,5 +35,3 @@ void cli_lamps_warn(cli_session *session, struct cli_render_job *job);
 
 /* The key "lamps" of the statistics, where there are any. */
 void cli_lamps_report(cli_json *json, const struct cli_render_job *job);
-
-#endif

@@ -1,6 +1,5 @@
 /* The lights of a picture: --light and --sky, and what they are where nobody said. */
-#ifndef CONIC_LIGHT_OPTIONS_H
-#define CONIC_LIGHT_OPTIONS_H
+#pragma once
 
 #include "cli/scene/render_job.h"
 
@@ -23,5 +22,3 @@ int cli_parse_sky(const char *text, void *value);
 void cli_lights_settle(cli_render_job *job);
 /* The key "lights" of the statistics, and "sky". */
 void cli_lights_report(cli_json *json, const cli_render_job *job);
-
-#endif

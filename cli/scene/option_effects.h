@@ -1,6 +1,5 @@
 /* Whether the options of a picture change anything, and go together: by the facts on which each has an effect. */
-#ifndef CONIC_OPTION_EFFECTS_H
-#define CONIC_OPTION_EFFECTS_H
+#pragma once
 
 #include "cli/option_check.h"
 
@@ -11,5 +10,3 @@ struct cli_scene_words;
  * are told by their first bytes, and again once the scene is open. */
 int cli_effects_check(const cli_session *session, const struct cli_scene_words *words, struct cli_render_job *job);
 int cli_effects_check_open(const cli_session *session, struct cli_render_job *job);
-
-#endif

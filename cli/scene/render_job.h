@@ -1,6 +1,5 @@
 /* One `conic render`: what was asked for, and what came of it. */
-#ifndef CONIC_RENDER_JOB_H
-#define CONIC_RENDER_JOB_H
+#pragma once
 
 #include "cli/device_option.h"
 #include "cli/scene/accumulate_job.h"
@@ -182,5 +181,3 @@ conic_image_options cli_picture_writing(const cli_render_job *job);
 void cli_render_tell(cli_session *session, const cli_render_job *job);
 /* Writes the statistics of the finished job to the session's --json file, if any. Returns the exit code. */
 int cli_render_report(cli_session *session, cli_render_job *job, const conic_image *image);
-
-#endif

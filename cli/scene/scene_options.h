@@ -1,6 +1,5 @@
 /* The options of a scene and its drawing, which several commands share: their values, and what they mean together. */
-#ifndef CONIC_SCENE_OPTIONS_H
-#define CONIC_SCENE_OPTIONS_H
+#pragma once
 
 #include "cli/command.h"
 #include "cli/scene/render_job.h"
@@ -47,5 +46,3 @@ int cli_scene_is_top(const cli_render_job *job);
 
 /* What the options of the scene and the drawing mean together. */
 int cli_scene_check(const cli_session *session, cli_scene_words *words, cli_render_job *job);
-
-#endif

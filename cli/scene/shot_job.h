@@ -1,6 +1,5 @@
 /* The shot of a picture as text: what is written of it, and what it is drawn again from. */
-#ifndef CONIC_SHOT_JOB_H
-#define CONIC_SHOT_JOB_H
+#pragma once
 
 #include "shots/shot_inputs.h"
 
@@ -28,5 +27,3 @@ enum { CLI_AGAIN = -2 };
 
 /* Whether they do, now that they are read once. */
 int cli_shot_is_again(const struct cli_session *session, const struct cli_render_job *job);
-
-#endif

@@ -1,6 +1,5 @@
 /* --stereo: each frame twice, from the left and from the right eye. */
-#ifndef CONIC_STEREO_H
-#define CONIC_STEREO_H
+#pragma once
 
 #include "cli/scene/render_job.h"
 
@@ -17,5 +16,3 @@ conic_stereo_eye cli_stereo_eye(const cli_render_job *job);
 /* Of a name that malloc gave and that this takes, the eye's: left or right in the place of %V, or before the ending.
  * Null without memory. */
 char *cli_stereo_name(const cli_render_job *job, char *name);
-
-#endif

@@ -1,6 +1,5 @@
 /* render --camera top: an orthophoto, north up, where it lies on the earth. */
-#ifndef CONIC_TOP_JOB_H
-#define CONIC_TOP_JOB_H
+#pragma once
 
 #include "cli/cut_region.h"
 #include "cli/json_write.h"
@@ -27,5 +26,3 @@ int cli_top_check(const cli_session *session, const struct cli_render_job *job);
 conic_status cli_top_check_formats(conic_context *context, const struct cli_render_job *job);
 /* Draws and writes the pictures of an open scene, and reports. Returns the exit code. */
 int cli_top_render(cli_session *session, struct cli_render_job *job);
-
-#endif

@@ -1,6 +1,5 @@
 /* The views of a file of cameras: which are drawn, and how cameras are written. */
-#ifndef CONIC_VIEWS_H
-#define CONIC_VIEWS_H
+#pragma once
 
 #include "cli/json_write.h"
 #include "cli/session.h"
@@ -22,5 +21,3 @@ void cli_view_stem(const conic_cameras *cameras, size_t i_view, char *stem, size
 
 /* A camera's members, as a file of one has them. */
 void cli_camera_write(cli_json *json, const conic_camera *camera);
-
-#endif

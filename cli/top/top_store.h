@@ -1,6 +1,5 @@
 /* Rows of a picture that arrive block by block and leave tile by tile: keeps the last ones, in memory or in a file. */
-#ifndef CONIC_TOP_STORE_H
-#define CONIC_TOP_STORE_H
+#pragma once
 
 #include "core/files/scratch.h"
 
@@ -20,5 +19,3 @@ void cli_top_store_close(cli_top_store *store);
 /* Stores `count` pixels of a row. Errors: IO. */
 conic_status cli_top_store_put(cli_top_store *store, size_t x, size_t y, const void *pixels, size_t count);
 conic_status cli_top_store_get(const cli_top_store *store, size_t x, size_t y, void *pixels, size_t count);
-
-#endif

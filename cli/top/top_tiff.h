@@ -1,6 +1,5 @@
 /* One TIFF of an orthophoto: takes blocks of pixels, from the left and from the top, and writes tiles. */
-#ifndef CONIC_TOP_TIFF_H
-#define CONIC_TOP_TIFF_H
+#pragma once
 
 #include "cli/top/top_store.h"
 #include "core/pictures/tiff_tiles.h"
@@ -36,5 +35,3 @@ conic_status cli_top_tiff_end(cli_top_tiff *file, conic_status status);
 /* Writes PATH's world file: .tfw beside .tif, .pgw beside .png, and so on: the ending's first and last letter, and w.
  * `pixel` is a pixel's edge; the corner is x and y of the picture's upper left corner. Errors: MEMORY, IO. */
 conic_status cli_world_file_write(conic_context *context, const char *path, double pixel, const double corner[2]);
-
-#endif

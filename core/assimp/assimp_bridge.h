@@ -3,8 +3,7 @@
  * checked.
  *
  * The module knows Assimp and nothing of conic but this header. */
-#ifndef CONIC_ASSIMP_BRIDGE_H
-#define CONIC_ASSIMP_BRIDGE_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -64,5 +63,3 @@ typedef struct conic_assimp_bridge_functions {
   /* Reads the file, writes the records, and ends the process, which should be its own. */
   void (*read)(conic_assimp_request *request);
 } conic_assimp_bridge_functions;
-
-#endif

@@ -1,6 +1,5 @@
 /* Which files Assimp is asked to read: only those of formats that were tried. */
-#ifndef CONIC_ASSIMP_KINDS_H
-#define CONIC_ASSIMP_KINDS_H
+#pragma once
 
 #include "conic/model.h"
 #include "core/base/base.h"
@@ -19,5 +18,3 @@ int conic_assimp_has_text(const void *bytes, size_t n, const char *text);
 
 /* Tells the kind by the name's ending. */
 int conic_assimp_find_ending(const char *path, conic_model_kind *kind);
-
-#endif

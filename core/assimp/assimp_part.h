@@ -1,7 +1,6 @@
 /* Puts together the parts of a model that Assimp reads. Vertices with the same place, colour and alpha become one, as
  * in other files, even if their corners differ in other attributes. */
-#ifndef CONIC_ASSIMP_PART_H
-#define CONIC_ASSIMP_PART_H
+#pragma once
 
 #include "core/assimp/assimp_process.h"
 #include "core/files/input.h"
@@ -44,5 +43,3 @@ float conic_assimp_decode(const conic_assimp_part_builder *parts, float value);
  * cannot be read is a warning. Errors: INPUT, MEMORY, CANCELLED. */
 conic_status conic_assimp_take_material(const conic_input *input, conic_assimp_process *process,
                                         const conic_assimp_record *record, conic_assimp_part_builder *parts);
-
-#endif

@@ -1,7 +1,6 @@
 /* A process of its own in which the bridge to Assimp reads a file. If it crashes, takes too much memory or time, or
  * writes to a terminal, only that process ends. */
-#ifndef CONIC_ASSIMP_PROCESS_H
-#define CONIC_ASSIMP_PROCESS_H
+#pragma once
 
 #include <sys/types.h>
 
@@ -25,5 +24,3 @@ conic_status conic_assimp_process_take(conic_assimp_process *process, void *byte
 
 /* Ends the process at once. */
 void conic_assimp_process_end(conic_assimp_process *process);
-
-#endif

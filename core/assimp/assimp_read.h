@@ -1,6 +1,5 @@
 /* The reader of the formats that Assimp knows. */
-#ifndef CONIC_ASSIMP_READ_H
-#define CONIC_ASSIMP_READ_H
+#pragma once
 
 #include "conic/model.h"
 #include "core/assimp/assimp_process.h"
@@ -18,5 +17,3 @@ conic_status conic_assimp_read(conic_input *input, conic_model_kind kind, const 
 /* Reads the model from the output of a process that has read the file. Errors: INPUT, MEMORY, CANCELLED. */
 conic_status conic_assimp_read_records(const conic_input *input, conic_assimp_process *process, conic_model_kind kind,
                                        const conic_read_options *options, conic_model *model);
-
-#endif

@@ -1,6 +1,5 @@
 /* What the module's files share: writing records, and giving Assimp files to read. */
-#ifndef CONIC_ASSIMP_WRITER_BRIDGE_H
-#define CONIC_ASSIMP_WRITER_BRIDGE_H
+#pragma once
 
 #include <assimp/cfileio.h>
 #include <assimp/scene.h>
@@ -33,5 +32,3 @@ struct aiFileIO conic_assimp_files(conic_assimp_writer *w);
 unsigned conic_assimp_coordinates(const conic_assimp_writer *w, const struct aiMesh *mesh);
 /* The number of a mesh's material record, which is sent when the first mesh needs it. */
 uint32_t conic_assimp_material(conic_assimp_writer *w, const struct aiMesh *mesh);
-
-#endif

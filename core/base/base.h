@@ -1,7 +1,6 @@
 /* What nearly every file stands on: the context with its memory, messages, options, threads and clocks, and the C
  * library's numbers, strings, sorting and streams. */
-#ifndef CONIC_BASE_H
-#define CONIC_BASE_H
+#pragma once
 
 #include <errno.h>
 #include <math.h>
@@ -22,5 +21,3 @@
     return (unsigned)value < (n) ? names[value] : NULL;                                                                \
   }
 /* NOLINTEND(bugprone-macro-parentheses) */
-
-#endif

@@ -1,7 +1,6 @@
 /* Numbers as bytes: the one place that knows this machine's byte order. Files are little-endian unless their format
  * says otherwise; on a little-endian machine each of these is a plain load or store. */
-#ifndef CONIC_BYTE_ORDER_H
-#define CONIC_BYTE_ORDER_H
+#pragma once
 
 #include <stddef.h>
 
@@ -96,5 +95,3 @@ static inline void conic_turn_words(void *words, size_t n, size_t n_bytes) {
       word[b] = byte;
     }
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Time that passes, and time that threads work: for statistics and time limits, never for results. */
-#ifndef CONIC_CLOCK_H
-#define CONIC_CLOCK_H
+#pragma once
 
 #include <time.h>
 
@@ -22,5 +21,3 @@ static inline conic_moment conic_moment_now(void) {
     worked = (struct timespec){0, 0};
   return (conic_moment){conic_seconds_now(), (double)worked.tv_sec + 1e-9 * (double)worked.tv_nsec};
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* sRGB to linear and back, with the same bits on every machine (only + − × ÷ √). */
-#ifndef CONIC_COLOR_H
-#define CONIC_COLOR_H
+#pragma once
 
 #include <stdint.h>
 
@@ -23,5 +22,3 @@ uint8_t conic_srgb_code(const float thresholds[255], float linear);
 
 /* An exposure in stops, -100 to 100, as a factor: 2^stops. */
 float conic_exposure_factor(double stops);
-
-#endif

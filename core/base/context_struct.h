@@ -1,6 +1,5 @@
 /* The context's members. */
-#ifndef CONIC_CONTEXT_STRUCT_H
-#define CONIC_CONTEXT_STRUCT_H
+#pragma once
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -63,5 +62,3 @@ uint64_t conic_context_next_version(conic_context *context);
 /* Starts the threads beside the calling one, or as many as the system gives, and counts them. Errors: MEMORY. */
 conic_status conic_pool_create(conic_context *context, conic_pool **pool);
 void conic_pool_destroy(conic_context *context, conic_pool *pool);
-
-#endif

@@ -1,6 +1,5 @@
 /* Splats as 2D and 3D Gaussian splatting store them: logarithmic scales, quaternions, logits, harmonics. */
-#ifndef CONIC_GAUSSIAN_H
-#define CONIC_GAUSSIAN_H
+#pragma once
 
 /* e^x with the same bits on every machine; relative error under 4e-16, 0 below -745.2, infinity above 709.8. */
 double conic_gaussian_exp(double x);
@@ -15,5 +14,3 @@ double conic_gaussian_color(double harmonic);
  * an ellipse (2: the first two). `rotation` is a quaternion w, x, y, z of any length; a zero one gives zero axes. */
 void conic_gaussian_axes(const double log_scales[3], int n_scales, const double rotation[4], double tangent_u[3],
                          double tangent_v[3]);
-
-#endif

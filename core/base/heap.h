@@ -1,6 +1,5 @@
 /* A priority queue of slots: the least key first, of equal keys the lowest slot. */
-#ifndef CONIC_HEAP_H
-#define CONIC_HEAP_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -38,5 +37,3 @@ static inline uint32_t conic_heap_pop(conic_heap *heap) {
   heap->slots[i] = moved;
   return first;
 }
-
-#endif

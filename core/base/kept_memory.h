@@ -1,6 +1,5 @@
 /* Memory that is kept from use to use and only ever grows. */
-#ifndef CONIC_KEPT_MEMORY_H
-#define CONIC_KEPT_MEMORY_H
+#pragma once
 
 #include "core/base/memory.h"
 
@@ -19,5 +18,3 @@ static inline void *conic_keep_room(conic_context *context, conic_kept_memory *m
   memory->bytes = memory->pointer ? count * size : 0;
   return memory->pointer;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Finds what a caller has lent (conic/loan.h), for readers. */
-#ifndef CONIC_LOAN_FIND_H
-#define CONIC_LOAN_FIND_H
+#pragma once
 
 #include "conic/loan.h"
 
@@ -9,5 +8,3 @@ int conic_loan_is_named(const char *name, const char *kind);
 
 /* The set lent under that name, if it is of the kind; else null. */
 const void *conic_loan_find(const conic_context *context, const char *name, const char *kind);
-
-#endif

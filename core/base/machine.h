@@ -1,6 +1,5 @@
 /* What the system says about the machine. */
-#ifndef CONIC_MACHINE_H
-#define CONIC_MACHINE_H
+#pragma once
 
 #include <stdint.h>
 
@@ -24,5 +23,3 @@ const void *conic_module_load(const char *name, const char *symbol, char message
 
 /* Whether there is such a module to load; the libraries it is linked to are not checked. */
 int conic_module_is_there(const char *name);
-
-#endif

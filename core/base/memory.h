@@ -1,6 +1,5 @@
 /* Memory through the context's allocator: counted sizes, no overflow, aligned for vectors. */
-#ifndef CONIC_MEMORY_H
-#define CONIC_MEMORY_H
+#pragma once
 
 #include <stddef.h>
 
@@ -64,5 +63,3 @@ void conic_memory_release_all(conic_context *context, void *const *pointers, siz
 /* Releases the blocks that are written out one after the other. */
 #define conic_memory_release_these(context, ...)                                                                       \
   conic_memory_release_all(context, (void *[]){__VA_ARGS__}, sizeof((void *[]){__VA_ARGS__}) / sizeof(void *))
-
-#endif

@@ -1,6 +1,5 @@
 /* Messages to the context's log. */
-#ifndef CONIC_MESSAGE_H
-#define CONIC_MESSAGE_H
+#pragma once
 
 #include <stdio.h>
 
@@ -22,5 +21,3 @@ void conic_log(conic_context *context, conic_log_level level, const char *format
 
 /* Reports progress of `task` from the calling thread; returns CONIC_ERROR_CANCELLED when the callback asks to stop. */
 conic_status conic_progress(conic_context *context, const char *task, double fraction);
-
-#endif

@@ -1,7 +1,6 @@
 /* Options structs across versions. Each begins with a size_t: its size where it was compiled. A later version adds
  * members at the end, never in padding, so that the size says which members exist. */
-#ifndef CONIC_OPTIONS_H
-#define CONIC_OPTIONS_H
+#pragma once
 
 #include <stddef.h>
 
@@ -30,5 +29,3 @@ int conic_options_take(void *own, const void *theirs);
 
 /* Whether bytes are all zero, as reserved words must be. */
 int conic_is_zero(const void *bytes, size_t n);
-
-#endif

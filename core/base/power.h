@@ -1,7 +1,6 @@
 /* Logarithms, powers and cube roots in double with the same bits on every machine; C libraries differ. Only + − × ÷ and
  * changes of the exponent are used. */
-#ifndef CONIC_POWER_H
-#define CONIC_POWER_H
+#pragma once
 
 /* ln v for a finite v > 0, with an absolute or relative error of 1e-15, whichever is larger. */
 double conic_logarithm(double v);
@@ -15,5 +14,3 @@ double conic_cube_root(double v);
 
 /* A positive number whose logarithm is about 1/n of v's: a start for Newton's iteration. */
 double conic_root_guess(double v, int n);
-
-#endif

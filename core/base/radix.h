@@ -1,6 +1,5 @@
 /* A stable sort of numbered keys, in time that grows as their number. */
-#ifndef CONIC_RADIX_H
-#define CONIC_RADIX_H
+#pragma once
 
 #include <stdint.h>
 
@@ -30,5 +29,3 @@ static inline uint64_t conic_spread_bits(uint64_t bits) {
   bits = (bits | bits << 4) & UINT64_C(0x10c30c30c30c30c3);
   return (bits | bits << 2) & UINT64_C(0x1249249249249249);
 }
-
-#endif

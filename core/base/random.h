@@ -1,7 +1,6 @@
 /* Random numbers by number: each depends on the seed, the index and the dimension, never on numbers drawn before, so
  * that any part of a sequence can be made by itself, on any thread. */
-#ifndef CONIC_RANDOM_H
-#define CONIC_RANDOM_H
+#pragma once
 
 #include <stdint.h>
 
@@ -32,5 +31,3 @@ static inline double conic_random_gaussian(uint64_t seed, uint64_t index, uint64
   }
   return ((double)sum + 6.0) * 0x1p-16 - 6.0;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* The value at a place of the order, found without sorting. */
-#ifndef CONIC_RANK_H
-#define CONIC_RANK_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -10,5 +9,3 @@ uint32_t conic_bits_of_rank(const uint32_t *numbers, size_t n, size_t rank);
 
 /* The same for floats without NaN; -0 comes before 0. */
 float conic_float_of_rank(const float *values, size_t n, size_t rank);
-
-#endif

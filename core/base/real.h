@@ -1,6 +1,5 @@
 /* Floating-point numbers as they are stored: whether they are finite, their bits, and their order for qsort. */
-#ifndef CONIC_REAL_H
-#define CONIC_REAL_H
+#pragma once
 
 #include <stdint.h>
 #include <string.h>
@@ -52,5 +51,3 @@ static inline int conic_least(int a, int b) {
 static inline int conic_greatest(int a, int b) {
   return a > b ? a : b;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* Several processes that make one thing together: a team. Whoever makes the team says how bytes get from one process to
  * another: the program over MPI, or threads of a test. */
-#ifndef CONIC_TEAM_H
-#define CONIC_TEAM_H
+#pragma once
 
 #include <stdint.h>
 
@@ -51,5 +50,3 @@ conic_moment conic_team_note(const conic_team *team, const char *name, conic_mom
 
 /* Sends to a partner, which does the same at the same time, and receives what it sends. */
 void *conic_team_swap(const conic_team *team, int partner, const void *bytes, size_t n_bytes, size_t *n_received);
-
-#endif

@@ -1,7 +1,6 @@
 /* Loops whose items a team shares. Its processes run the same work with their own contexts, on the same data. Each does
  * some of a loop's items and gets the values of the others' items from them. */
-#ifndef CONIC_TEAM_RUNS_H
-#define CONIC_TEAM_RUNS_H
+#pragma once
 
 #include "core/base/team.h"
 #include "core/base/threads.h"
@@ -53,5 +52,3 @@ conic_status conic_team_runs(conic_context *context, const conic_team_loop *loop
 
 /* Collective: replaces *count by the sum over all processes. Errors: CANCELLED. */
 conic_status conic_team_total(conic_context *context, size_t *count);
-
-#endif

@@ -1,6 +1,5 @@
 /* The context's thread pool. */
-#ifndef CONIC_THREADS_H
-#define CONIC_THREADS_H
+#pragma once
 
 #include "conic/context.h"
 
@@ -35,5 +34,3 @@ typedef void conic_region_watch(void *cookie, const char *name, size_t n_items, 
 /* From now on all work is shared out as for so many threads, but the calling thread does it, in order. The context has
  * no other thread. */
 void conic_parallel_plan(conic_context *context, int threads, conic_region_watch *watch, void *cookie);
-
-#endif

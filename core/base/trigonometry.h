@@ -1,7 +1,6 @@
 /* Sine, cosine, tangent in double with the same bits on every machine; C libraries differ. The error is at most 1 ulp
  * of 1 for |x| up to 1e5 radians; only + − × ÷ are used. NaN and infinity give NaN. */
-#ifndef CONIC_TRIGONOMETRY_H
-#define CONIC_TRIGONOMETRY_H
+#pragma once
 
 #define CONIC_PI 3.14159265358979323846
 
@@ -12,5 +11,3 @@ double conic_tan(double x_rad);
 static inline double conic_radians(double degrees) {
   return degrees * (CONIC_PI / 180.0);
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* Vectors of three doubles. Sums go from the first component to the last, so that results have the same bits
  * everywhere. */
-#ifndef CONIC_VECTORS_H
-#define CONIC_VECTORS_H
+#pragma once
 
 #include <math.h>
 #include <stddef.h>
@@ -72,5 +71,3 @@ static inline void conic_rotation_of(const double quaternion[4], double rows[3][
   rows[2][1] = 2.0 * (y * z + w * x);
   rows[2][2] = 1.0 - 2.0 * (x * x + y * y);
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* A list of cameras while its file is read: what readers of all formats share. */
-#ifndef CONIC_CAMERA_LIST_H
-#define CONIC_CAMERA_LIST_H
+#pragma once
 
 #include "conic/cameras.h"
 
@@ -60,5 +59,3 @@ typedef struct conic_colmap_file {
 
 conic_status conic_camera_colmap_read(conic_camera_list *list, const conic_colmap_file *cameras,
                                       const conic_colmap_file *images, int is_text);
-
-#endif

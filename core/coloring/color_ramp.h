@@ -1,7 +1,6 @@
 /* Colour ramps: a line through a few colours of OKLab (Ottosson, 2020), where equal steps look equally large; and a
  * palette of classes. Linear RGB from 0 to 1, computed by + − × ÷ alone. */
-#ifndef CONIC_COLOR_RAMP_H
-#define CONIC_COLOR_RAMP_H
+#pragma once
 
 #include <stdint.h>
 
@@ -26,5 +25,3 @@ void conic_number_color(uint32_t number, float linear[3]);
 
 /* "ground", "water" …; null from 23 on. */
 const char *conic_class_name(uint32_t number);
-
-#endif

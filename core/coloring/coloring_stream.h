@@ -1,6 +1,5 @@
 /* Colours for points that come in batches; a first pass finds the range. */
-#ifndef CONIC_COLORING_STREAM_H
-#define CONIC_COLORING_STREAM_H
+#pragma once
 
 #include "conic/coloring.h"
 #include "core/coloring/value_limits.h"
@@ -16,5 +15,3 @@ conic_status conic_coloring_of_range(conic_context *context, const conic_colorin
 /* Adds the values of a batch that its colours will be made of, a field's or the height. */
 void conic_coloring_sample(const conic_coloring_options *options, const conic_splats *batch,
                            conic_value_sample *sample);
-
-#endif

@@ -1,6 +1,5 @@
 /* The legend: draws what a picture's colours mean, as a bar with numbers, or as classes by name. */
-#ifndef CONIC_LEGEND_H
-#define CONIC_LEGEND_H
+#pragma once
 
 #include "conic/coloring.h"
 
@@ -14,5 +13,3 @@ conic_status conic_legend_make(conic_context *context, const conic_coloring *col
 /* A legend of named linear colours, under a title, which the caller releases. Errors: MEMORY. */
 conic_status conic_legend_make_list(conic_context *context, const char *title, const char *const *names,
                                     const float (*colors)[3], int n, conic_image *image);
-
-#endif

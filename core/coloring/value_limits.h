@@ -1,6 +1,5 @@
 /* The range that most of a scan's values lie in, found in one pass and little memory. */
-#ifndef CONIC_VALUE_LIMITS_H
-#define CONIC_VALUE_LIMITS_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -21,5 +20,3 @@ void conic_value_sample_add(conic_value_sample *sample, double value);
 /* The 2nd and the 98th percentile of the sample; its least and largest value where these are equal; both 0 for an empty
  * sample. Sorts the sample: nothing may be added afterwards. */
 void conic_value_sample_limits(conic_value_sample *sample, double *minimum, double *maximum);
-
-#endif

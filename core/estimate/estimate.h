@@ -1,6 +1,5 @@
 /* What the steps of an estimate share; core/estimate/estimate.c runs them. */
-#ifndef CONIC_ESTIMATE_H
-#define CONIC_ESTIMATE_H
+#pragma once
 
 #include "conic/model.h"
 #include "core/estimate/neighbourhood.h"
@@ -77,5 +76,3 @@ conic_status conic_estimate_spacings(conic_context *context, const conic_neighbo
  * Errors: CANCELLED. */
 conic_status conic_estimate_from_neighbours(conic_context *context, conic_estimate *estimate,
                                             const conic_neighbourhood *neighbourhood, const double *spacings);
-
-#endif

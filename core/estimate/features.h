@@ -1,6 +1,5 @@
 /* Sharp features: creases of a surface, and the clip lines that splats get there (docs/notes/features.md). */
-#ifndef CONIC_FEATURES_H
-#define CONIC_FEATURES_H
+#pragma once
 
 #include "conic/model.h"
 
@@ -26,5 +25,3 @@ void conic_clip_choice_add(conic_clip_choice *choice, const double line[3], doub
  * else one of them. A place may be cut by `slack` of its own distance. Returns 0 where no choice does. */
 int conic_clip_choose(const conic_clip_choice *choice, const double (*places)[2], size_t n_places, double slack,
                       conic_clip *clip);
-
-#endif

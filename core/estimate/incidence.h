@@ -1,6 +1,5 @@
 /* Which triangles the vertices of a mesh belong to. */
-#ifndef CONIC_INCIDENCE_H
-#define CONIC_INCIDENCE_H
+#pragma once
 
 #include "conic/model.h"
 
@@ -15,5 +14,3 @@ typedef struct conic_incidence {
 conic_status conic_incidence_create(conic_context *context, const conic_model *model, size_t most,
                                     conic_incidence *incidence);
 void conic_incidence_release(conic_context *context, conic_incidence *incidence);
-
-#endif

@@ -1,6 +1,5 @@
 /* A set's points with their neighbours and normals, slot by slot, from which ellipses are estimated. */
-#ifndef CONIC_NEIGHBOURHOOD_H
-#define CONIC_NEIGHBOURHOOD_H
+#pragma once
 
 #include "core/base/team_runs.h"
 #include "core/estimate/neighbours.h"
@@ -99,5 +98,3 @@ conic_status conic_scatter_find(conic_context *context, conic_neighbourhood *nei
 /* The reach of a dot at a slot, and its normal, which points outwards; zero where the neighbours do not tell. */
 double conic_scatter_reach(const conic_neighbourhood *neighbourhood, size_t slot);
 void conic_scatter_outside(const conic_neighbourhood *neighbourhood, size_t slot, double normal[3]);
-
-#endif

@@ -3,8 +3,7 @@
  * The tree keeps the points in its own order, by *slots*: slots near in space are near in memory, so that work slot by
  * slot stays in the cache. Coincident points are one slot, which stands for the first of them; points that are not
  * finite have none. The order and every answer depend only on the positions and indices. */
-#ifndef CONIC_NEIGHBOURS_H
-#define CONIC_NEIGHBOURS_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -55,5 +54,3 @@ double conic_neighbours_bound2(const conic_neighbours *tree, const uint32_t *nea
 static inline size_t conic_neighbours_leaf_begin(const conic_neighbours *tree, size_t i_leaf) {
   return (size_t)((uint64_t)i_leaf * (uint64_t)tree->n_slots / (uint64_t)tree->n_leaves);
 }
-
-#endif

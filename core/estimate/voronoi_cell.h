@@ -1,6 +1,5 @@
 /* A point's Voronoi cell in its tangent plane, cut off at a radius. */
-#ifndef CONIC_VORONOI_CELL_H
-#define CONIC_VORONOI_CELL_H
+#pragma once
 
 enum { CONIC_CELL_SIDES = 16, CONIC_CELL_CORNERS = CONIC_CELL_SIDES + 64 };
 
@@ -18,5 +17,3 @@ void conic_voronoi_cell_begin(conic_voronoi_cell *cell, double radius);
 void conic_voronoi_cell_cut(conic_voronoi_cell *cell, double x, double y);
 
 double conic_voronoi_cell_area(const conic_voronoi_cell *cell);
-
-#endif

@@ -1,8 +1,7 @@
 /* The system's files, where systems differ: disk_posix.c and disk_windows.c. Names are UTF-8 everywhere, and files may
  * exceed 2 GiB. A failing function says why in errno. Descriptors are the C library's, for close and fileno; programs
  * that are started do not inherit them, and bytes are never converted as text. */
-#ifndef CONIC_DISK_H
-#define CONIC_DISK_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -81,5 +80,3 @@ void conic_disk_close_folder(conic_disk_folder *folder);
 
 /* Whether the process of that number has surely ended. */
 int conic_disk_is_writer_gone(long process);
-
-#endif

@@ -1,7 +1,6 @@
 /* Output files that appear under their name only when they are whole: written beside it, then renamed. Symbolic links
  * are followed, and a replaced file's mode is kept. */
-#ifndef CONIC_FILE_H
-#define CONIC_FILE_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -63,5 +62,3 @@ int conic_file_begins_with(const char *path, const void *bytes, size_t n_bytes);
 
 /* Whether PATH ends in "." and these lower-case letters, in either case, in any locale. */
 int conic_file_has_ending(const char *path, const char *ending);
-
-#endif

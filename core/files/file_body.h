@@ -1,7 +1,6 @@
 /* Files that are mapped and used where they are: a header of 256 bytes, then arrays, each from a multiple of 64 bytes
  * on, with zeros between. The header has the sum of the arrays' sums. */
-#ifndef CONIC_FILE_BODY_H
-#define CONIC_FILE_BODY_H
+#pragma once
 
 #include <stddef.h>
 #include <stdio.h>
@@ -103,5 +102,3 @@ void conic_file_turn_arrays(const conic_file_layout *layout, unsigned char *byte
  * INPUT. */
 conic_status conic_file_take_arrays(conic_context *context, const char *path, conic_mapping *file,
                                     const conic_file_layout *layout, uint64_t sum);
-
-#endif

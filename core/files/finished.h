@@ -7,8 +7,7 @@
  *
  * What is behind the last part's line means nothing, so that the file is valid whenever a run that appends to it is
  * ended. */
-#ifndef CONIC_FINISHED_H
-#define CONIC_FINISHED_H
+#pragma once
 
 #include "core/files/sha256.h"
 
@@ -57,5 +56,3 @@ int conic_finished_is_there(const char *folder, const conic_finished_file *file)
 
 /* The length and SHA-256 of a file. Errors: IO, without a message. */
 conic_status conic_file_hash(const char *path, uint64_t *n_bytes, char hash[CONIC_SHA256_ROOM]);
-
-#endif

@@ -1,6 +1,5 @@
 /* Notes what a context has read, so that a program never writes over it, whatever names the files have. */
-#ifndef CONIC_GUARD_H
-#define CONIC_GUARD_H
+#pragma once
 
 #include "core/files/disk.h"
 
@@ -29,5 +28,3 @@ int conic_guard_next(const conic_context *context, size_t *at, conic_guarded *re
 
 /* Whether an existing file may be written over: not if it was read. Errors: ARGUMENT. */
 conic_status conic_guard_check(conic_context *context, const char *path, const conic_disk_entry *existing);
-
-#endif

@@ -1,6 +1,5 @@
 /* Unpacking deflated data, with zlib where it is there. */
-#ifndef CONIC_INFLATE_H
-#define CONIC_INFLATE_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -21,5 +20,3 @@ int conic_inflate_is_there(void);
 /* Packs as gzip into a new block, which the caller releases. Errors: MEMORY, UNSUPPORTED. */
 conic_status conic_gzip(conic_context *context, const unsigned char *from, size_t n_from, unsigned char **to,
                         size_t *n_to);
-
-#endif

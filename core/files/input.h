@@ -1,6 +1,5 @@
 /* Input files as a stream of bytes through a window of bounded size; text files word by word. */
-#ifndef CONIC_INPUT_H
-#define CONIC_INPUT_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -110,5 +109,3 @@ conic_status conic_input_read_statements(conic_input *input, const conic_input_s
 
 /* To the start of the next line; *is_done where the file ends before. Errors: as fill. */
 conic_status conic_input_next_line(conic_input *input, int *is_done);
-
-#endif

@@ -1,7 +1,6 @@
 /* A strict reader of JSON files, value by value in the file's order. After an error every call fails (with one message
  * in all), so that callers may check at the end. */
-#ifndef CONIC_JSON_READ_H
-#define CONIC_JSON_READ_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -64,5 +63,3 @@ conic_status conic_json_end(conic_json *json);
 
 /* Logs "FILE: what (line N)", unless something was wrong before. */
 conic_status conic_json_wrong(conic_json *json, const char *what);
-
-#endif

@@ -1,6 +1,5 @@
 /* How the head of a LAS file is laid out. */
-#ifndef CONIC_LAS_LAYOUT_H
-#define CONIC_LAS_LAYOUT_H
+#pragma once
 
 #include <string.h>
 
@@ -34,5 +33,3 @@ enum { CONIC_LAS_LEAST_HEADER = 227, CONIC_LAS_HEADER_1_4 = 375, CONIC_LAS_RECOR
 static inline int conic_las_is_of_world(const unsigned char *record) {
   return strncmp((const char *)record + 2, "LASF_Projection", 16) == 0;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* LZF, the packing of LibLZF: unpacking only. A byte n below 32 is followed by n + 1 bytes that are copied. Any other
  * byte begins a copy of unpacked bytes: three bits of its length, 13 of its distance. */
-#ifndef CONIC_LZF_H
-#define CONIC_LZF_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -12,5 +11,3 @@ static inline uint64_t conic_lzf_most_bytes(uint64_t n_packed) {
 
 /* Returns whether unpacking gives exactly n_bytes. */
 int conic_lzf_unpack(const unsigned char *packed, size_t n_packed, unsigned char *bytes, size_t n_bytes);
-
-#endif

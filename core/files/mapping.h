@@ -1,6 +1,5 @@
 /* A whole file in memory, read-only. */
-#ifndef CONIC_MAPPING_H
-#define CONIC_MAPPING_H
+#pragma once
 
 #include "core/files/input.h"
 
@@ -31,5 +30,3 @@ typedef struct conic_checksumming {
 void conic_checksum_begin(conic_checksumming *sum);
 void conic_checksum_add(conic_checksumming *sum, const unsigned char *bytes, size_t n_bytes);
 unsigned long long conic_checksum_end(const conic_checksumming *sum);
-
-#endif

@@ -1,6 +1,5 @@
 /* Decimal numbers to doubles and back, correctly rounded in any locale and with any C library. */
-#ifndef CONIC_NUMBER_H
-#define CONIC_NUMBER_H
+#pragma once
 
 #include <stddef.h>
 
@@ -21,5 +20,3 @@ size_t conic_number_print(char text[CONIC_NUMBER_ROOM], double value);
 
 /* The same for a number that is rounded to float after reading. */
 size_t conic_number_print_float(char text[CONIC_NUMBER_ROOM], float value);
-
-#endif

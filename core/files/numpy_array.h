@@ -1,6 +1,5 @@
 /* Arrays of numbers as NumPy writes them: .npy, by itself or in an .npz. */
-#ifndef CONIC_NUMPY_ARRAY_H
-#define CONIC_NUMPY_ARRAY_H
+#pragma once
 
 #include "conic/context.h"
 
@@ -19,5 +18,3 @@ conic_status conic_numpy_array_open(conic_context *context, const char *file, co
 
 /* Number i, which must exist, in C's order, whatever the file's order is. */
 double conic_numpy_array_at(const conic_numpy_array *array, size_t i);
-
-#endif

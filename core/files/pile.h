@@ -1,6 +1,5 @@
 /* Bytes that several threads at once append and read again, in a file without a name. */
-#ifndef CONIC_PILE_H
-#define CONIC_PILE_H
+#pragma once
 
 #include <stdatomic.h>
 
@@ -32,5 +31,3 @@ static inline conic_status conic_pile_append(conic_pile *pile, const void *bytes
 static inline conic_status conic_pile_read(const conic_pile *pile, uint64_t at, void *bytes, size_t n_bytes) {
   return conic_scratch_read(&pile->file, at, bytes, n_bytes);
 }
-
-#endif

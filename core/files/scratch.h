@@ -1,6 +1,5 @@
 /* A file without a name, which the system removes however the program ends. */
-#ifndef CONIC_SCRATCH_H
-#define CONIC_SCRATCH_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -21,5 +20,3 @@ void conic_scratch_close(conic_scratch *scratch);
 /* Several threads may read while none writes. Errors: IO. */
 conic_status conic_scratch_write(const conic_scratch *scratch, uint64_t at, const void *bytes, size_t n_bytes);
 conic_status conic_scratch_read(const conic_scratch *scratch, uint64_t at, void *bytes, size_t n_bytes);
-
-#endif

@@ -1,6 +1,5 @@
 /* SHA-256 (FIPS 180-4), with which others can check a file. */
-#ifndef CONIC_SHA256_H
-#define CONIC_SHA256_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -21,5 +20,3 @@ void conic_sha256_end(conic_sha256 *sum, char text[CONIC_SHA256_ROOM]);
  * state by these. */
 int conic_sha256_has_instructions(void);
 void conic_sha256_mix_blocks(uint32_t state[8], const uint32_t constants[64], const unsigned char *blocks, size_t n);
-
-#endif

@@ -1,6 +1,5 @@
 /* Bytes that are stored and read again: in memory up to a bound, then in a file, except for the last ones. */
-#ifndef CONIC_SPOOL_H
-#define CONIC_SPOOL_H
+#pragma once
 
 #include "core/files/scratch.h"
 
@@ -28,5 +27,3 @@ conic_status conic_spool_read(const conic_spool *spool, uint64_t offset, void *b
 static inline uint64_t conic_spool_bytes(const conic_spool *spool) {
   return spool->file_bytes + spool->n_held;
 }
-
-#endif

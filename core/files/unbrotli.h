@@ -1,6 +1,5 @@
 /* Unpacking Brotli, through libbrotlidec where it is there. */
-#ifndef CONIC_UNBROTLI_H
-#define CONIC_UNBROTLI_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -8,5 +7,3 @@ int conic_unbrotli_is_there(void);
 
 /* Whether the bytes unpack to n_bytes exactly. Thread-safe. */
 int conic_unbrotli(conic_context *context, const unsigned char *from, size_t n_from, unsigned char *to, size_t n_bytes);
-
-#endif

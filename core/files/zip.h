@@ -1,6 +1,5 @@
 /* ZIP archives in memory: finding a file by its name; and writing an archive of files that are stored unpacked. */
-#ifndef CONIC_ZIP_H
-#define CONIC_ZIP_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -43,5 +42,3 @@ typedef struct conic_zip_writer {
 int conic_zip_add(conic_zip_writer *writer, const char *name, const unsigned char *bytes, size_t n_bytes);
 /* Writes the list; 0 where anything failed. */
 int conic_zip_end(conic_zip_writer *writer);
-
-#endif

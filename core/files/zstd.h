@@ -1,6 +1,5 @@
 /* zstd, where it is in this build: bytes to fewer bytes and back. */
-#ifndef CONIC_ZSTD_H
-#define CONIC_ZSTD_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -25,5 +24,3 @@ size_t conic_zstd_pack_whole(conic_zstd *zstd, const unsigned char *from, size_t
 
 /* Unpacks; returns whether that gives exactly n_bytes. */
 int conic_zstd_unpack(conic_zstd *zstd, const unsigned char *from, size_t n_packed, unsigned char *to, size_t n_bytes);
-
-#endif

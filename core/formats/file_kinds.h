@@ -1,7 +1,6 @@
 /* Kinds of files that are not read as models, told by their first bytes or the ending of their name, and what would
  * make them readable. */
-#ifndef CONIC_FILE_KINDS_H
-#define CONIC_FILE_KINDS_H
+#pragma once
 
 #include <stddef.h>
 
@@ -19,5 +18,3 @@ const conic_foreign_kind *conic_foreign_kind_find(const char *path, const char *
 
 /* All kinds that are read, for messages. */
 extern const char conic_readable_kinds[];
-
-#endif

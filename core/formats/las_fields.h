@@ -1,7 +1,6 @@
 /* The values that a LAS file's points have by name: the fields of their format, and the "extra bytes" that a record of
  * the file describes (LAS 1.4, table 24); and the record of how they are packed. */
-#ifndef CONIC_LAS_FIELDS_H
-#define CONIC_LAS_FIELDS_H
+#pragma once
 
 #include "core/formats/ply_source.h"
 
@@ -44,5 +43,3 @@ const char *conic_las_field_type(const conic_las_field *field);
 
 /* The layer that has to be unpacked for a field, in formats 6 to 10: a bit of core/laz/laz.h. */
 unsigned conic_las_field_layer(unsigned format, const conic_las_field *field);
-
-#endif

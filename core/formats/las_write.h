@@ -1,6 +1,5 @@
 /* Points as LAS 1.4, in point format 6, or 7 with colours. */
-#ifndef CONIC_LAS_WRITE_H
-#define CONIC_LAS_WRITE_H
+#pragma once
 
 #include "conic/splats.h"
 
@@ -19,5 +18,3 @@ conic_status conic_las_writer_append(conic_las_writer *writer, const conic_splat
 /* Completes the file, or drops it if the status is not OK. Releases the writer, which may be null, and returns the
  * status. Errors: IO. */
 conic_status conic_las_writer_end(conic_las_writer *writer, conic_status status);
-
-#endif

@@ -1,6 +1,5 @@
 /* Material files (MTL) beside an OBJ: each material's diffuse colour, its alpha, and the pictures of both. */
-#ifndef CONIC_MATERIAL_FILE_H
-#define CONIC_MATERIAL_FILE_H
+#pragma once
 
 #include "conic/triangles.h"
 #include "core/splats/faces.h"
@@ -9,5 +8,3 @@
  * file's folder; a missing one is a warning. Errors: INPUT, UNSUPPORTED, MEMORY, CANCELLED. */
 conic_status conic_material_file_read(conic_context *context, const char *path, const conic_texts *names,
                                       conic_material *materials);
-
-#endif

@@ -1,7 +1,6 @@
 /* A file's points in parts, so that several processes can each read their own. The batches of the parts, in order, are
  * those of a process that reads the whole file. */
-#ifndef CONIC_MODEL_PART_H
-#define CONIC_MODEL_PART_H
+#pragma once
 
 #include "core/splats/builder.h"
 #include "core/splats/raw_colors.h"
@@ -38,5 +37,3 @@ void conic_model_survey_add(conic_model_survey *survey, const conic_model_survey
 conic_status conic_model_stream_part(conic_context *context, const char *path, const conic_read_options *options,
                                      const conic_points_range *range, const conic_model_survey *survey,
                                      conic_batch_receiver *receive, void *cookie);
-
-#endif

@@ -1,6 +1,5 @@
 /* What reading a model and streaming its points share. */
-#ifndef CONIC_MODEL_READ_H
-#define CONIC_MODEL_READ_H
+#pragma once
 
 #include "conic/triangles.h"
 #include "core/files/input.h"
@@ -27,5 +26,3 @@ conic_status conic_read_options_check(conic_context *context, const char *path, 
 /* conic_triangles_read with these options, which are set to keep faces. */
 conic_status conic_triangles_read_model(conic_context *context, const char *path, conic_read_options *options,
                                         conic_triangles *triangles);
-
-#endif

@@ -1,6 +1,5 @@
 /* The header of a PCD file: which fields its points have, and how they are stored. */
-#ifndef CONIC_PCD_HEADER_H
-#define CONIC_PCD_HEADER_H
+#pragma once
 
 #include "core/formats/ply_header.h"
 #include "core/formats/text_columns.h"
@@ -27,5 +26,3 @@ typedef struct conic_pcd_header {
 
 /* Reads to past the line with the kind of data. Errors: INPUT, CANCELLED. */
 conic_status conic_pcd_header_read(conic_input *input, conic_pcd_header *header);
-
-#endif

@@ -1,6 +1,5 @@
 /* From the columns of a PLY's vertices to splats: which properties mean what, and how they are converted. */
-#ifndef CONIC_PLY_COLUMNS_H
-#define CONIC_PLY_COLUMNS_H
+#pragma once
 
 #include "core/formats/ply_header.h"
 #include "core/splats/builder.h"
@@ -74,5 +73,3 @@ conic_status conic_ply_layout_choose_fields(conic_input *input, const conic_ply_
  * where positions need one. */
 void conic_ply_layout_convert(conic_ply_layout *layout, const conic_ply_block block, size_t n, size_t first,
                               conic_splats *points);
-
-#endif

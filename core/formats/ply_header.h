@@ -1,6 +1,5 @@
 /* The header of a PLY file: which elements it holds, and how their values are stored. */
-#ifndef CONIC_PLY_HEADER_H
-#define CONIC_PLY_HEADER_H
+#pragma once
 
 #include "core/files/input.h"
 #include "core/splats/faces.h"
@@ -73,5 +72,3 @@ int conic_ply_type_is_integer(conic_ply_type type);
 
 /* The least and largest value of an integer type. */
 void conic_ply_type_range(conic_ply_type type, double *least, double *largest);
-
-#endif

@@ -1,6 +1,5 @@
 /* The values after a PLY file's header, one at a time, in any encoding. */
-#ifndef CONIC_PLY_SOURCE_H
-#define CONIC_PLY_SOURCE_H
+#pragma once
 
 #include "core/formats/ply_header.h"
 
@@ -55,5 +54,3 @@ conic_status conic_ply_truncated(conic_ply_source *source);
 
 /* Says where the file is cut: as a warning where what is before is of use, which is OK, else as an error. */
 conic_status conic_ply_tell_cut(const conic_ply_source *source, int is_usable);
-
-#endif

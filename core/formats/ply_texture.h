@@ -1,6 +1,5 @@
 /* Textures in PLY files, for readers that keep faces' other attributes. */
-#ifndef CONIC_PLY_TEXTURE_H
-#define CONIC_PLY_TEXTURE_H
+#pragma once
 
 #include "core/formats/ply_source.h"
 #include "core/splats/face_colors.h"
@@ -37,5 +36,3 @@ conic_status conic_ply_face_texture_read(conic_ply_source *source, const conic_p
  * (their number is not that of the corners), MEMORY. */
 conic_status conic_ply_face_texture_end_row(const conic_ply_source *source, uint64_t n_corners, conic_model *model,
                                             size_t first, conic_ply_face_texture *texture);
-
-#endif

@@ -1,7 +1,6 @@
 /* The readers of models. Each reads from the start of the file. With a delivery the points go there. On failure *model
  * is for the caller to release. Errors of all: INPUT, MEMORY, CANCELLED, the receiver's. */
-#ifndef CONIC_READERS_H
-#define CONIC_READERS_H
+#pragma once
 
 #include "core/formats/model_part.h"
 #include "core/formats/ply_source.h"
@@ -91,5 +90,3 @@ int conic_model_is_lent(const conic_context *context, const char *name);
  * it. Errors: ARGUMENT, INPUT (a face index, no such field), MEMORY. */
 conic_status conic_model_copy_lent(conic_context *context, const char *name, const conic_read_options *options,
                                    conic_model *model);
-
-#endif

@@ -1,6 +1,5 @@
 /* The meaning of text columns: by names, which a header or the caller gives, else by their number and values. */
-#ifndef CONIC_TEXT_COLUMNS_H
-#define CONIC_TEXT_COLUMNS_H
+#pragma once
 
 #include <stddef.h>
 
@@ -77,5 +76,3 @@ int conic_text_columns_find(const conic_text_columns *columns, const char *name)
 
 /* "x y z - red green blue", as much as fits. */
 void conic_text_columns_list(const conic_text_columns *columns, char *text, size_t room);
-
-#endif

@@ -1,6 +1,5 @@
 /* Boxes in a picture, as lines. */
-#ifndef CONIC_BOX_LINES_H
-#define CONIC_BOX_LINES_H
+#pragma once
 
 #include "conic/image.h"
 
@@ -8,5 +7,3 @@
  * the camera's size; fainter where they lie behind the depths z of what is drawn. Nothing nearer than near_z shows. */
 void conic_box_lines_paint(const conic_camera *camera, double near_z, const float *z, conic_image *map,
                            const double box[2][3], const float color[3]);
-
-#endif

@@ -1,6 +1,5 @@
 /* Rays through places of a picture, for cameras of every kind: the inverse of conic/camera.h's projection. */
-#ifndef CONIC_CAMERA_RAYS_H
-#define CONIC_CAMERA_RAYS_H
+#pragma once
 
 #include "conic/camera.h"
 
@@ -25,5 +24,3 @@ void conic_camera_rays_init(const conic_camera *camera, conic_camera_rays *rays)
  * Other cameras have unit directions, and z is the distance from the eye. Returns 0 where no ray goes through the
  * place: the camera sees no direction there, or the lens has no single one. */
 int conic_camera_ray(const conic_camera_rays *rays, double x_px, double y_px, double origin[3], double direction[3]);
-
-#endif

@@ -1,6 +1,5 @@
 /* The parts of a comparison; docs/reference/diff.md has the definitions. */
-#ifndef CONIC_COMPARE_H
-#define CONIC_COMPARE_H
+#pragma once
 
 #include "conic/image.h"
 #include "core/base/base.h"
@@ -86,5 +85,3 @@ conic_status conic_largest_hole(conic_context *context, const conic_image *a, co
  * Allocated; `width` and `height` are at most the image's. Errors: ARGUMENT (there is no rgba), MEMORY. */
 conic_status conic_image_reduce(conic_context *context, const conic_image *image, int width, int height,
                                 conic_image *reduced);
-
-#endif

@@ -1,6 +1,5 @@
 /* A framed camera's direction, and its distance. */
-#ifndef CONIC_FRAMING_H
-#define CONIC_FRAMING_H
+#pragma once
 
 #include "conic/camera.h"
 
@@ -20,5 +19,3 @@ double conic_framing_tangent(const conic_framing *framing, double length);
 
 /* The part of a picture's width or height that the scene fills, at zoom 1. */
 #define CONIC_FRAMING_PART 0.9
-
-#endif

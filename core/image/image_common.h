@@ -1,6 +1,5 @@
 /* Functions that the image code shares inside the library. */
-#ifndef CONIC_IMAGE_COMMON_H
-#define CONIC_IMAGE_COMMON_H
+#pragma once
 
 #include "conic/image.h"
 #include "core/base/base.h"
@@ -41,5 +40,3 @@ uint64_t conic_hash_bytes(const void *bytes, size_t n_bytes);
 /* conic_image_hash of one plane row by row: the hash of no pixels, and of more pixels that follow. */
 #define CONIC_IMAGE_HASH_START UINT64_C(0xcbf29ce484222325)
 uint64_t conic_image_hash_on(uint64_t hash, const void *values, size_t n_bytes);
-
-#endif

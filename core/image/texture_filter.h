@@ -1,7 +1,6 @@
 /* The constants of elliptical texture filtering (docs/reference/picture.md, Textures), shared by plain C, device
  * programs and the lanes of raster/loops/texture_body.h. */
-#ifndef CONIC_TEXTURE_FILTER_H
-#define CONIC_TEXTURE_FILTER_H
+#pragma once
 
 /* The filters of a pixel and of a texel have a standard deviation of half their width, and end at two of these. */
 #define CONIC_FILTER_VARIANCE 0.25f
@@ -25,5 +24,3 @@
 /* In texels: a footprint of this width sees the whole picture at once, and so does one of an eighth of it; squares of
  * squares do not overflow. */
 #define CONIC_TEXTURE_WIDEST 1e8f
-
-#endif

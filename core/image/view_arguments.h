@@ -1,6 +1,5 @@
 /* Checks of the camera and the options, for all functions that draw or choose what to draw. */
-#ifndef CONIC_VIEW_ARGUMENTS_H
-#define CONIC_VIEW_ARGUMENTS_H
+#pragma once
 
 #include "conic/render.h"
 
@@ -25,5 +24,3 @@ conic_status conic_view_ray_check(conic_context *context, const char *who, const
  * initialised, or nobody can look through the camera. */
 conic_status conic_view_arguments_take(conic_context *context, const char *who, const conic_camera *camera,
                                        const conic_render_options *options, conic_render_options *own);
-
-#endif

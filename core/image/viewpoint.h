@@ -1,6 +1,5 @@
 /* A camera for choosing what to draw: transforms places into its space, and tests which spheres are in its picture. */
-#ifndef CONIC_VIEWPOINT_H
-#define CONIC_VIEWPOINT_H
+#pragma once
 
 #include "conic/camera.h"
 #include "core/base/vectors.h"
@@ -31,5 +30,3 @@ static inline int conic_viewpoint_misses(const conic_viewpoint *from, const doub
     is_beyond |= conic_dot(from->side[i], p) < -radius;
   return is_beyond;
 }
-
-#endif

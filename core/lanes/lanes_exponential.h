@@ -1,7 +1,6 @@
 /* The exponentials of core/splats/kernel.h in every lane, with the same operations in the same order. C and OpenCL C
  * share this text. */
-#ifndef CONIC_LANES_EXPONENTIAL_H
-#define CONIC_LANES_EXPONENTIAL_H
+#pragma once
 
 #include "core/lanes/lanes.h"
 
@@ -27,5 +26,3 @@ CONIC_INLINE lanes lanes_gauss_narrow(lanes q) {
   lanes c = 0x1.84f19cp-10f + -0x1.373c6ep-13f * t, d = 0x1.a3885cp-17f + -0x1.d6063cp-21f * t;
   return (a + t2 * b) + t4 * (c + t2 * d);
 }
-
-#endif

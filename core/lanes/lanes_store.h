@@ -1,7 +1,6 @@
 /* From channels in lanes to pixels in rows. A part of a block is 4 rows; lane l is column l / 4, row l % 4. Each column
  * is 128 bits, so that transposing within them gives rows of pixels. */
-#ifndef CONIC_LANES_STORE_H
-#define CONIC_LANES_STORE_H
+#pragma once
 
 #include "core/lanes/lanes.h"
 #include "core/lanes/stream.h"
@@ -250,7 +249,5 @@ CONIC_INLINE void lanes_store_plane(float *to, size_t stride, lanes value) {
     for (size_t row = 0; row < 4; row++)
       to[row * stride + (size_t)column] = value[column * 4 + (int)row];
 }
-
-#endif
 
 #endif

@@ -1,6 +1,5 @@
 /* Copies past the caches, for data that are written once and not read soon: an image's rows. */
-#ifndef CONIC_STREAM_H
-#define CONIC_STREAM_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -26,5 +25,3 @@ static inline void conic_stream_fence(void) {
   _mm_sfence();
 #endif
 }
-
-#endif

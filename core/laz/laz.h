@@ -4,8 +4,7 @@
  * compressors 1 and 2, items of version 2, waveforms of version 1). Formats 6 to 10 are packed in layers (compressor 3,
  * items of versions 3 and 4); unwanted layers are skipped. The result of a spoiled chunk means nothing, but decoding
  * ends, and memory is bounded by the chunk's own size. */
-#ifndef CONIC_LAZ_H
-#define CONIC_LAZ_H
+#pragma once
 
 #include "core/files/input.h"
 
@@ -95,5 +94,3 @@ typedef conic_status conic_laz_receiver(void *cookie, const unsigned char *recor
  * are no points), MEMORY, CANCELLED, the receiver's. */
 conic_status conic_laz_read(conic_input *input, const conic_laz_format *format, uint64_t n_points, uint64_t first,
                             uint64_t end, unsigned wanted, int is_again, conic_laz_receiver *receive, void *cookie);
-
-#endif

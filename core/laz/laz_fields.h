@@ -1,7 +1,6 @@
 /* Shared by both ways of packing: predictions of differences, tables of returns, and the codes of times, colours and
  * waveforms. */
-#ifndef CONIC_LAZ_FIELDS_H
-#define CONIC_LAZ_FIELDS_H
+#pragma once
 
 #include "core/laz/laz_stream.h"
 
@@ -103,5 +102,3 @@ typedef struct conic_laz_waves {
 
 /* Decodes the description of a waveform after `last`; they may be at the same place. */
 void conic_laz_wave(conic_laz_stream *stream, conic_laz_waves *waves, const unsigned char *last, unsigned char *wave);
-
-#endif

@@ -3,8 +3,7 @@
  * The coding is Said's (Introduction to Arithmetic Coding, HPL-2004-76): a model counts symbols and takes its
  * probabilities, of 15 bits, from the counts every now and then. A model begins when it is first used, so that unused
  * models cost nothing. */
-#ifndef CONIC_LAZ_MODELS_H
-#define CONIC_LAZ_MODELS_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -53,5 +52,3 @@ typedef struct conic_laz_bit_model {
 
 void conic_laz_bit_model_begin(conic_laz_bit_model *model);
 void conic_laz_bit_model_update(conic_laz_bit_model *model);
-
-#endif

@@ -1,6 +1,5 @@
 /* The two ways of packing points: one after the other, and in layers. */
-#ifndef CONIC_LAZ_POINTS_H
-#define CONIC_LAZ_POINTS_H
+#pragma once
 
 #include "core/laz/laz.h"
 #include "core/laz/laz_models.h"
@@ -35,5 +34,3 @@ size_t conic_laz_count_layers(const conic_laz_format *format);
 /* The end of the used bytes. */
 const unsigned char *conic_laz_serial_end(const conic_laz_serial *serial);
 const unsigned char *conic_laz_layered_end(const conic_laz_layered *layered);
-
-#endif

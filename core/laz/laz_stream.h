@@ -2,8 +2,7 @@
  *
  * `value` is always below `length`, whatever the bytes are, so that every symbol is one of its model's. Bytes missing
  * at the end read as zeros, which is noted. */
-#ifndef CONIC_LAZ_STREAM_H
-#define CONIC_LAZ_STREAM_H
+#pragma once
 
 #include "core/base/byte_order.h"
 #include "core/laz/laz_models.h"
@@ -130,5 +129,3 @@ static inline uint32_t conic_laz_integer_16(conic_laz_stream *stream, conic_laz_
                                             unsigned context) {
   return (predicted + (uint32_t)conic_laz_off(stream, integer, context, 16)) & 0xffffu;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* The table of a LAZ file's chunks, which comes after them: how long each is, and, where they differ, how many points
  * it has. */
-#ifndef CONIC_LAZ_TABLE_H
-#define CONIC_LAZ_TABLE_H
+#pragma once
 
 #include "core/laz/laz.h"
 
@@ -21,5 +20,3 @@ uint64_t conic_laz_table_count(const unsigned char *head);
 conic_status conic_laz_table_read(conic_context *context, const conic_laz_format *format, const unsigned char *bytes,
                                   size_t n_bytes, uint64_t offset, uint64_t end, uint64_t n_points, size_t n,
                                   conic_laz_chunk *chunks, size_t *n_listed);
-
-#endif

@@ -1,7 +1,6 @@
 /* Cryptomatte 1.2: which things cover each pixel, and how much of it, as compositing programs read it from an EXR. A
  * thing is known by the hash of its name, written as a float. */
-#ifndef CONIC_CRYPTOMATTE_H
-#define CONIC_CRYPTOMATTE_H
+#pragma once
 
 #include "conic/image.h"
 #include "core/base/base.h"
@@ -29,5 +28,3 @@ typedef struct conic_cryptomatte_manifest {
 /* Adds a name. Errors: MEMORY. */
 conic_status conic_cryptomatte_name(conic_context *context, conic_cryptomatte_manifest *manifest, const char *name);
 void conic_cryptomatte_manifest_release(conic_context *context, conic_cryptomatte_manifest *manifest);
-
-#endif

@@ -1,7 +1,6 @@
 /* The coordinate system of world coordinates, as GeoTIFF states it (OGC 19-008r4) and LAS files keep it: numbered keys,
  * or an EPSG code from which such keys are made. */
-#ifndef CONIC_GEOREFERENCE_H
-#define CONIC_GEOREFERENCE_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -28,5 +27,3 @@ conic_status conic_georeference_read(conic_context *context, const char *path, c
 /* Errors: MEMORY. */
 conic_status conic_georeference_copy(conic_context *context, const conic_georeference *from, conic_georeference *to);
 void conic_georeference_release(conic_context *context, conic_georeference *reference);
-
-#endif

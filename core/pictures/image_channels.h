@@ -1,6 +1,5 @@
 /* The channels of files that name their planes, as EXRs do. */
-#ifndef CONIC_IMAGE_CHANNELS_H
-#define CONIC_IMAGE_CHANNELS_H
+#pragma once
 
 #include "conic/image.h"
 
@@ -16,5 +15,3 @@ conic_channel conic_channel_find_in(const char *name, int is_luminance);
 
 /* Completes an image: alpha 1, and grey in a picture of luminance alone. */
 void conic_channels_complete(conic_image *image, int has_alpha, int is_luminance);
-
-#endif

@@ -4,8 +4,7 @@
  * Written: one part of scanlines, the channels of conic_plane_describe in alphabetical order, FLOAT (or HALF) and UINT,
  * the attributes, and colorInteropID where colours are display values. Read: the first part, scanlines or tiles, any
  * compression; the data window is the picture. */
-#ifndef CONIC_IMAGE_EXR_H
-#define CONIC_IMAGE_EXR_H
+#pragma once
 
 #include "conic/image.h"
 
@@ -20,5 +19,3 @@ conic_status conic_exr_write(conic_context *context, const char *path, const con
 
 /* Errors: INPUT, UNSUPPORTED (deep or subsampled), MEMORY. */
 conic_status conic_exr_read(conic_context *context, const char *path, conic_image *image);
-
-#endif

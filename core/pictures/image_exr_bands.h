@@ -1,7 +1,6 @@
 /* An OpenEXR file written band by band, so that nobody has to hold the whole picture. Its bytes are
  * conic_exr_write's. */
-#ifndef CONIC_IMAGE_EXR_BANDS_H
-#define CONIC_IMAGE_EXR_BANDS_H
+#pragma once
 
 #include "conic/image.h"
 
@@ -42,5 +41,3 @@ conic_status conic_exr_bands_flush(conic_exr_bands *bands);
 /* Completes the file after the last band, or drops it if the status is not OK. Releases the writer, which may be null,
  * and returns the status. Errors: ARGUMENT (rows are missing), IO. */
 conic_status conic_exr_bands_end(conic_exr_bands *bands, conic_status status);
-
-#endif

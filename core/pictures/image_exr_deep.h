@@ -1,6 +1,5 @@
 /* Deep EXR files: any number of samples a pixel, each with a colour, a depth, a number and a weight. */
-#ifndef CONIC_IMAGE_EXR_DEEP_H
-#define CONIC_IMAGE_EXR_DEEP_H
+#pragma once
 
 #include "conic/image.h"
 
@@ -40,5 +39,3 @@ conic_status conic_deep_append(conic_deep_writer *writer, const conic_deep_packe
 /* Completes the file, or drops it if the status is not OK. Releases the writer, which may be null, and returns the
  * status. Errors: IO. */
 conic_status conic_deep_end(conic_deep_writer *writer, conic_status status);
-
-#endif

@@ -1,7 +1,6 @@
 /* Shared by the EXR writers and the reader: file access by our own functions, the library's message kept for the end,
  * and an image's attributes. */
-#ifndef CONIC_IMAGE_EXR_STREAM_H
-#define CONIC_IMAGE_EXR_STREAM_H
+#pragma once
 
 #if CONIC_HAVE_OPENEXR
 
@@ -42,5 +41,4 @@ exr_result_t conic_exr_prepare_attributes(exr_context_t file, const conic_image 
 exr_result_t conic_exr_add_attributes(exr_context_t file, const conic_image *image);
 exr_result_t conic_exr_end_header(exr_context_t file, exr_result_t result);
 
-#endif
 #endif

@@ -5,8 +5,7 @@
  * sRGB-encoded. Where the format has an alpha channel the colour is divided by alpha before it is encoded; where it has
  * none, the picture stands over black. Read: rgba, by the same rules backwards; grey goes to R, G and B; without alpha
  * A is 1. Of an EXR all planes are read, by the names of its channels. */
-#ifndef CONIC_IMAGE_FOREIGN_H
-#define CONIC_IMAGE_FOREIGN_H
+#pragma once
 
 #include "conic/image.h"
 
@@ -22,5 +21,3 @@ conic_status conic_foreign_read(conic_context *context, const char *path, conic_
 
 /* The size that a JPEG, GIF or WebP states; returns 0 for a damaged file, or one of another format. */
 int conic_foreign_size(const char *path, int *width, int *height);
-
-#endif

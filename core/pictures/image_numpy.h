@@ -4,8 +4,7 @@
  * one item are ignored, and (3, H, W) is read, too. In an .npz each array is a plane by its name, "rgba", "Z", "N" …;
  * "rgb", "image", "colors", "render" and "renders" are colours, too, and "A", "alpha" and "alphas" their alpha. Floats
  * are taken as they are, and bytes and words divided by the greatest code. */
-#ifndef CONIC_IMAGE_NUMPY_H
-#define CONIC_IMAGE_NUMPY_H
+#pragma once
 
 #include "conic/image.h"
 
@@ -19,5 +18,3 @@ conic_status conic_numpy_plane_read(conic_context *context, const char *path, co
 /* A whole number as a file of floats holds it: -1 is CONIC_NO_ID; a float that is not whole gives a number that nothing
  * has. */
 uint32_t conic_numpy_whole_number(double value);
-
-#endif

@@ -3,8 +3,7 @@
  * Written: rgba as colour (R, G, B as they are, over black); without rgba, a single other plane, as colour or as grey.
  * Whole numbers become floats if floats hold them, and -1 where nothing is. Little-endian, rows from the bottom. Read:
  * either byte order; the scale's size is ignored; grey goes to R, G and B; A is 1. */
-#ifndef CONIC_IMAGE_PFM_H
-#define CONIC_IMAGE_PFM_H
+#pragma once
 
 #include "conic/image.h"
 
@@ -16,5 +15,3 @@ conic_status conic_pfm_write(conic_context *context, const char *path, const con
 
 /* Errors: INPUT, MEMORY. */
 conic_status conic_pfm_read(conic_context *context, const char *path, conic_image *image);
-
-#endif

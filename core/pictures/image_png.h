@@ -2,8 +2,7 @@
  *
  * Written: rgba, 8 bits, sRGB-encoded and marked so, the colour divided by alpha. Read: any kind; grey, palettes and
  * transparent colours become channels, and colours are sRGB-encoded whatever the file says of its gamma. */
-#ifndef CONIC_IMAGE_PNG_H
-#define CONIC_IMAGE_PNG_H
+#pragma once
 
 #include <stdio.h>
 
@@ -25,5 +24,3 @@ conic_status conic_png_read(conic_context *context, const char *path, conic_imag
 
 /* Reads the codes without decoding, each divided by *most_code, the greatest possible code: 255 or 65535. */
 conic_status conic_png_read_codes(conic_context *context, const char *path, conic_image *image, unsigned *most_code);
-
-#endif

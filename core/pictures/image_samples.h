@@ -1,6 +1,5 @@
 /* Converts between the rgba plane (linear, premultiplied floats) and the samples of image formats. */
-#ifndef CONIC_IMAGE_SAMPLES_H
-#define CONIC_IMAGE_SAMPLES_H
+#pragma once
 
 #include "conic/image.h"
 
@@ -25,5 +24,3 @@ void conic_samples_from_rgba(conic_context *context, const float *rgba, int widt
 /* The reverse; missing alpha is 1. */
 void conic_samples_to_rgba(conic_context *context, const void *samples, int width, int height,
                            conic_samples_layout layout, float *rgba);
-
-#endif

@@ -2,8 +2,7 @@
  *
  * It is a module, conic-openimageio.so, which is loaded when the first file needs it: OpenImageIO needs some 250
  * libraries, for which drawing into an EXR or a PNG should not wait. */
-#ifndef CONIC_OPENIMAGEIO_BRIDGE_H
-#define CONIC_OPENIMAGEIO_BRIDGE_H
+#pragma once
 
 #include <stddef.h>
 
@@ -71,5 +70,4 @@ int conic_bridge_is_there(void);
 
 #ifdef __cplusplus
 }
-#endif
 #endif

@@ -1,7 +1,6 @@
 /* Pictures of any size as tiled TIFF files, written tile by tile: TIFF 6.0, or BigTIFF where the file may exceed 4 GB;
  * with the tags of GeoTIFF (OGC 19-008r4) where the coordinate system is known. */
-#ifndef CONIC_TIFF_TILES_H
-#define CONIC_TIFF_TILES_H
+#pragma once
 
 #include "core/pictures/georeference.h"
 
@@ -32,5 +31,3 @@ conic_status conic_tiff_append(conic_tiff *tiff, void *pixels);
 /* Completes the file after the last tile, or drops it if the status is not OK. Releases the writer, which may be null,
  * and returns the status. Errors: IO. */
 conic_status conic_tiff_end(conic_tiff *tiff, conic_status status);
-
-#endif

@@ -1,6 +1,5 @@
 /* The bytes of an E57 file (ASTM E2807): pages whose last four bytes are the checksum of the others. */
-#ifndef CONIC_E57_FILE_H
-#define CONIC_E57_FILE_H
+#pragma once
 
 #include "core/files/mapping.h"
 
@@ -107,5 +106,3 @@ conic_status conic_e57_records_fill(conic_e57_records *records, size_t *n);
 
 /* Takes the next n values of a wanted column, at most as many as are ready. */
 void conic_e57_records_take(conic_e57_records *records, int column, size_t n, double *values);
-
-#endif

@@ -1,6 +1,5 @@
 /* The direction from which a scan's points were seen. */
-#ifndef CONIC_SIGHT_H
-#define CONIC_SIGHT_H
+#pragma once
 
 #include "core/base/vectors.h"
 
@@ -15,5 +14,3 @@ static inline void conic_sight_find(const double scanner[3], const double point[
   if (!(conic_length(sight) < CONIC_FARTHEST_SIGHT) || !conic_normalize(sight))
     sight[0] = sight[1] = sight[2] = 0.0;
 }
-
-#endif

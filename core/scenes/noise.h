@@ -1,6 +1,5 @@
 /* Gradient noise in the plane, smooth to its second derivatives, which it also gives. */
-#ifndef CONIC_NOISE_H
-#define CONIC_NOISE_H
+#pragma once
 
 #include <stdint.h>
 
@@ -14,5 +13,3 @@ typedef struct conic_jet {
 /* About -0.7 to 0.7, zero where x and y are whole; features are about one unit wide. Each seed gives another noise.
  * |x|, |y| < 2³¹. */
 void conic_noise(uint64_t seed, double x, double y, conic_jet *jet);
-
-#endif

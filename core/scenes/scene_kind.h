@@ -3,8 +3,7 @@
  * A surface is sampled in one of two ways. `place` puts sample i of n where a formula says: an even lattice, carried
  * onto the surface by a map that keeps areas. Without such a map the scene has a lattice;
  * `walk` and `project` find its points near the surface and carry them there. */
-#ifndef CONIC_SCENE_KIND_H
-#define CONIC_SCENE_KIND_H
+#pragma once
 
 #include "conic/scene.h"
 #include "core/base/base.h"
@@ -119,5 +118,3 @@ double conic_scene_equal_area_angle(double turns, double e);
 
 /* A colour `t` (clamped to 0 … 1) of the way through n ≥ 2 equally spaced colours. */
 void conic_scene_blend(const uint8_t (*stops)[3], int n, double t, uint8_t color[3]);
-
-#endif

@@ -1,6 +1,5 @@
 /* The terrain's heights: an island of fractal mountains in a flat sea. */
-#ifndef CONIC_SCENE_TERRAIN_H
-#define CONIC_SCENE_TERRAIN_H
+#pragma once
 
 #include <stdint.h>
 
@@ -13,5 +12,3 @@ typedef struct conic_terrain_place {
 
 /* The terrain of that seed at (x, z). */
 void conic_terrain_at(uint64_t seed, double x, double z, conic_terrain_place *place);
-
-#endif

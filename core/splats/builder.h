@@ -1,6 +1,5 @@
 /* A model that grows while it is read. */
-#ifndef CONIC_BUILDER_H
-#define CONIC_BUILDER_H
+#pragma once
 
 #include "core/splats/point_values.h"
 
@@ -81,5 +80,3 @@ conic_status conic_builder_add_clip(conic_builder *builder, const conic_clip *cl
 
 /* Errors: MEMORY. */
 conic_status conic_builder_add_triangle(conic_builder *builder, uint32_t a, uint32_t b, uint32_t c);
-
-#endif

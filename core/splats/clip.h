@@ -1,6 +1,5 @@
 /* Clip lines as they are kept: which lines count, and how records are found and made. */
-#ifndef CONIC_CLIP_H
-#define CONIC_CLIP_H
+#pragma once
 
 #include "conic/splats.h"
 
@@ -24,5 +23,3 @@ static inline size_t conic_clip_find(const conic_splats *splats, size_t splat) {
 
 /* Drops the records of the splats for which `is_dropped` answers other than 0. */
 void conic_clip_filter(conic_splats *splats, int (*is_dropped)(const void *cookie, uint32_t splat), const void *cookie);
-
-#endif

@@ -1,7 +1,6 @@
 /* Sets as callers give them. A column is one component of an array, read with its stride; what only public functions
  * check is sound, and lies side by side, in all that comes after them. */
-#ifndef CONIC_COLUMNS_H
-#define CONIC_COLUMNS_H
+#pragma once
 
 #include "conic/triangles.h"
 
@@ -50,5 +49,3 @@ typedef struct conic_entered_drawing {
 conic_status conic_drawing_enter(conic_context *context, const char *who, const conic_drawing *given,
                                  conic_entered_drawing *entered);
 void conic_drawing_leave(conic_context *context, conic_entered_drawing *entered);
-
-#endif

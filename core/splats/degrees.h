@@ -1,7 +1,6 @@
 /* Points whose x and y are degrees of longitude and latitude, beside heights in metres: drawn as they stand they are a
  * needle. */
-#ifndef CONIC_DEGREES_H
-#define CONIC_DEGREES_H
+#pragma once
 
 #include "conic/splats.h"
 
@@ -12,5 +11,3 @@ int conic_points_are_degrees(const conic_splats *points);
 /* Makes metres of them, to the east and to the north of the middle of their box, on the WGS 84 ellipsoid: true there,
  * and within a thousandth of that over a degree. `middle` is its longitude and latitude. */
 void conic_points_take_metres(conic_splats *points, double middle[2]);
-
-#endif

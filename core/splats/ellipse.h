@@ -1,7 +1,6 @@
 /* Ellipses in tangent planes that bound given points (Confetti §4.3, with the corrections of docs/notes/errata.md).
  */
-#ifndef CONIC_ELLIPSE_H
-#define CONIC_ELLIPSE_H
+#pragma once
 
 /* Two unit vectors that make a right-handed orthonormal basis with the unit normal: u × v = n. Stable for every n. */
 void conic_tangent_basis(const double normal[3], double u[3], double v[3]);
@@ -42,5 +41,3 @@ void conic_ellipse_overlap(conic_ellipse *ellipse, double cell_area, double cove
  * axes, where they are not positive and finite. */
 int conic_ellipse_axes(const conic_ellipse *ellipse, const double u[3], const double v[3], double sigmas,
                        float tangent_u[3], float tangent_v[3]);
-
-#endif

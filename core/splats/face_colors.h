@@ -1,6 +1,5 @@
 /* Colours that a file's faces have, and its vertices lack. */
-#ifndef CONIC_FACE_COLORS_H
-#define CONIC_FACE_COLORS_H
+#pragma once
 
 #include "core/splats/builder.h"
 
@@ -19,5 +18,3 @@ conic_status conic_face_colors_take(conic_context *context, conic_face_colors *c
 
 /* Gives the vertices their colours, unless `status` is a failure, and releases the rest. Errors: MEMORY, `status`. */
 conic_status conic_face_colors_finish(conic_builder *builder, conic_face_colors *colors, conic_status status);
-
-#endif

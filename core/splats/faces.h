@@ -1,6 +1,5 @@
 /* What a mesh's faces have besides their vertices, while a model is read and until triangles take it. */
-#ifndef CONIC_FACES_H
-#define CONIC_FACES_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -63,5 +62,3 @@ conic_status conic_texts_add(conic_context *context, conic_texts *texts, const c
 const char *conic_texts_at(const conic_texts *texts, size_t i);
 /* Which of the texts is this; `count` where none is. */
 size_t conic_texts_find(const conic_texts *texts, const char *text, size_t length);
-
-#endif

@@ -1,6 +1,5 @@
 /* Vectors of three floats. Sums go from the first component to the last. C and OpenCL C share this text. */
-#ifndef CONIC_FLOAT_VECTORS_H
-#define CONIC_FLOAT_VECTORS_H
+#pragma once
 
 #include <math.h>
 
@@ -15,5 +14,3 @@ static inline float conic_float_unit(const float a[3], float unit[3]) {
     unit[axis] = a[axis] * scale;
   return length;
 }
-
-#endif

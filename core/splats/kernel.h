@@ -1,7 +1,6 @@
 /* Reconstruction kernels, as functions of q = r², r in standard deviations: unit peak at 0, falling to the cutoff.
  * The same bits everywhere: + − × ÷ √ and integer operations only. */
-#ifndef CONIC_KERNEL_H
-#define CONIC_KERNEL_H
+#pragma once
 
 #include <math.h>
 #include <stdint.h>
@@ -90,5 +89,3 @@ static inline float conic_kernel_support(const conic_kernel *kernel) {
     support = kernel->b;
   return support * support;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* The near distance that fits a box: what near_z = 0 stands for. */
-#ifndef CONIC_NEAR_H
-#define CONIC_NEAR_H
+#pragma once
 
 #include <math.h>
 
@@ -10,5 +9,3 @@ static inline double conic_near_of_box(const double low[3], const double high[3]
     diagonal_squared += (high[i] - low[i]) * (high[i] - low[i]);
   return diagonal_squared > 0.0 ? 1e-4 * sqrt(diagonal_squared) : 1e-4;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* The values that a file's points have by name besides what splats hold, and the one of them that is wanted. */
-#ifndef CONIC_POINT_FIELDS_H
-#define CONIC_POINT_FIELDS_H
+#pragma once
 
 #include "core/splats/builder.h"
 
@@ -21,5 +20,3 @@ conic_status conic_fields_choose(conic_builder *builder, const char *file, const
 /* Of a file whose reader lists none: refuses wanted fields; and points chosen of one with faces. Errors: INPUT. */
 conic_status conic_fields_check(conic_context *context, const char *file, const conic_read_options *options,
                                 const conic_model *model);
-
-#endif

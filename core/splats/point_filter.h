@@ -1,7 +1,6 @@
 /* Which points are wanted, by what they have by name: "classification = 2 and (intensity > 100 or z in 0..5)". The same
  * for every file (docs/reference/formats.md, Choosing points). */
-#ifndef CONIC_POINT_FILTER_H
-#define CONIC_POINT_FILTER_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -20,5 +19,3 @@ const char *conic_filter_name(const conic_filter *filter, size_t i);
 /* Whether a point with these values, in the order of the names, is wanted. A value that is not a number satisfies no
  * comparison but !=. */
 int conic_filter_passes(const conic_filter *filter, const double *values);
-
-#endif

@@ -1,6 +1,5 @@
 /* Points of a model by their place, colour and alpha, so that equal vertices become one. */
-#ifndef CONIC_POINT_SLOTS_H
-#define CONIC_POINT_SLOTS_H
+#pragma once
 
 #include "core/splats/builder.h"
 
@@ -16,5 +15,3 @@ conic_status conic_point_slots_reserve(conic_builder *builder, conic_point_slots
 /* The point that is like the next one of the model, whose values are there: an earlier one, or this one, which then
  * counts. There is room for it. */
 uint32_t conic_point_slots_join(conic_builder *builder, conic_point_slots *slots);
-
-#endif

@@ -1,8 +1,7 @@
 /* What points have by name besides what a splat has, such as all attributes of a scan: a number a point each, in the
  * order of the points. A reader fills columns; from them come the points' scalars, which points are left out, and what
  * is kept. */
-#ifndef CONIC_POINT_VALUES_H
-#define CONIC_POINT_VALUES_H
+#pragma once
 
 #include "conic/model.h"
 #include "core/splats/point_filter.h"
@@ -34,5 +33,3 @@ conic_status conic_splats_keep_value(conic_context *context, conic_splats *splat
 /* From the columns of all points of the set: scalars; and what the filter does not pass is left out of the set, clip
  * lines with it. */
 void conic_point_values_settle(conic_splats *points);
-
-#endif

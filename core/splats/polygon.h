@@ -1,6 +1,5 @@
 /* Polygons of a mesh, which become triangles. */
-#ifndef CONIC_POLYGON_H
-#define CONIC_POLYGON_H
+#pragma once
 
 #include "conic/model.h"
 
@@ -8,5 +7,3 @@
  * it, for it is not convex, they become others that do not, with what else the faces have. A polygon of more than 256
  * corners, or one that crosses itself, or of vertices that were not read yet, stays the fan. */
 void conic_polygon_settle(conic_model *model, size_t first);
-
-#endif

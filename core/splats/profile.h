@@ -1,8 +1,7 @@
 /* What the prefilter makes of a kernel that is no Gaussian, over what it makes of a Gaussian's peak: a table over the
  * filter's share in the variance along either axis, the direction and the radius (docs/reference/picture.md, Profile).
  * The same bits everywhere. OpenCL C reads this text, too. */
-#ifndef CONIC_PROFILE_H
-#define CONIC_PROFILE_H
+#pragma once
 
 #include <math.h>
 #include <stdint.h>
@@ -170,5 +169,3 @@ static inline float conic_profile_at(const conic_profile *profile, const conic_a
   }
   return aim->peak * value;
 }
-
-#endif

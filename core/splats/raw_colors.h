@@ -1,7 +1,6 @@
 /* Colours whose scale is known only when all have been read: they are collected as they stand in the file, and then
  * decoded. */
-#ifndef CONIC_RAW_COLORS_H
-#define CONIC_RAW_COLORS_H
+#pragma once
 
 #include "conic/splats.h"
 
@@ -34,5 +33,3 @@ void conic_raw_colors_apply(const conic_raw_scale *scale, float *values, size_t 
  * count as 16. Where all are multiples of 256, they are codes of 8 bits in the upper half, and 255 × 256 is white.
  * Where the largest is 0, nobody has filled them in: they are dropped, and the points are white. Errors: MEMORY. */
 conic_status conic_raw_colors_decode(conic_context *context, conic_splats *points, int may_be_fractions);
-
-#endif

@@ -1,7 +1,6 @@
 /* Each process of a team has a part of one set of splats. These functions find what holds of the whole set, to the bits
  * that a single process finds. */
-#ifndef CONIC_SHARES_H
-#define CONIC_SHARES_H
+#pragma once
 
 #include "conic/splats.h"
 #include "core/base/team.h"
@@ -40,5 +39,3 @@ static inline size_t conic_shares_stride(const conic_splats_shares *shares, cons
 static inline size_t conic_shares_first(const conic_splats_shares *shares, size_t stride) {
   return shares->team ? (stride - (size_t)(shares->first % stride)) % stride : 0;
 }
-
-#endif

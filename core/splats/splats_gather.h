@@ -1,6 +1,5 @@
 /* What the library does with splat sets besides the public functions. */
-#ifndef CONIC_SPLATS_GATHER_H
-#define CONIC_SPLATS_GATHER_H
+#pragma once
 
 #include "conic/splats.h"
 
@@ -18,5 +17,3 @@ conic_status conic_splats_resize(conic_context *context, conic_splats *splats, s
  * finite. Without one the bounds are 0. */
 size_t conic_points_bounds(float *const position[3], size_t stride, const double origin[3], const uint32_t *indices,
                            size_t n, double minimum[3], double maximum[3]);
-
-#endif

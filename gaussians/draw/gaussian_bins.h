@@ -1,6 +1,5 @@
 /* Which footprints meet which tile, in the order of all. */
-#ifndef CONIC_GAUSSIAN_BINS_H
-#define CONIC_GAUSSIAN_BINS_H
+#pragma once
 
 #include "core/base/radix.h"
 #include "gaussians/draw/gaussian_parts.h"
@@ -19,5 +18,3 @@ conic_status conic_gaussian_bins_make(conic_context *context, const conic_gaussi
                                       const conic_radix_item *order, size_t n, const conic_gaussian_window *window,
                                       conic_gaussian_bins *bins);
 void conic_gaussian_bins_release(conic_context *context, conic_gaussian_bins *bins);
-
-#endif

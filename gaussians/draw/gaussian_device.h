@@ -1,6 +1,5 @@
 /* What composites in the place of the processor's loops: another device. */
-#ifndef CONIC_GAUSSIAN_DEVICE_H
-#define CONIC_GAUSSIAN_DEVICE_H
+#pragma once
 
 #include "gaussians/draw/gaussian_bins.h"
 #include "gaussians/draw/gaussian_target.h"
@@ -22,5 +21,3 @@ struct conic_gaussian_device {
   /* Fills the planes of the target. Errors: MEMORY, UNSUPPORTED, CANCELLED. */
   conic_status (*composite)(conic_gaussian_device *device, const conic_gaussian_composition *composition);
 };
-
-#endif

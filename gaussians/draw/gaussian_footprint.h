@@ -1,6 +1,5 @@
 /* A Gaussian set up for one picture: what its pixels need of it. C and OpenCL C share the records. */
-#ifndef CONIC_GAUSSIAN_FOOTPRINT_H
-#define CONIC_GAUSSIAN_FOOTPRINT_H
+#pragma once
 
 #include "gaussians/draw/gaussian_rules.h"
 
@@ -60,6 +59,4 @@ conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const
 /* A Gaussian's colour in floats (docs/reference/gaussians.md, Colour): max(0, ½ + Σ sh·Y) seen along `from_eye`, of any
  * length. Returns 0 where it is not finite. */
 int conic_harmonic_color(const conic_gaussians *gaussians, size_t i, const double from_eye[3], float color[3]);
-#endif
-
 #endif

@@ -1,6 +1,5 @@
 /* Where on the screen an ellipsoid lies, with room for all that floats round when pixels look at it. */
-#ifndef CONIC_GAUSSIAN_OUTLINE_H
-#define CONIC_GAUSSIAN_OUTLINE_H
+#pragma once
 
 #include "gaussians/draw/gaussian_footprint.h"
 
@@ -33,5 +32,3 @@ int conic_gaussian_find_outline(const conic_gaussian_view *view, const conic_gau
 /* Limits the box to pixels whose centres are within, and to the picture. Returns 0 where it is empty. */
 int conic_gaussian_limit_box(const conic_gaussian_view *view, const double least[2], const double most[2],
                              conic_gaussian_footprint *f);
-
-#endif

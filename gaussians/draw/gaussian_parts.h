@@ -1,6 +1,5 @@
 /* A picture of Gaussians that is set up once and drawn window by window. */
-#ifndef CONIC_GAUSSIAN_PARTS_H
-#define CONIC_GAUSSIAN_PARTS_H
+#pragma once
 
 #include "conic/gaussian_render.h"
 
@@ -28,5 +27,3 @@ const conic_gaussian_statistics *conic_gaussian_picture_statistics(const conic_g
 
 /* Null is allowed. */
 void conic_gaussian_picture_release(conic_gaussian_picture *picture);
-
-#endif

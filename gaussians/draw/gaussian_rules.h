@@ -1,6 +1,5 @@
 /* What distinguishes the profiles; docs/reference/gaussians.md has the same table. */
-#ifndef CONIC_GAUSSIAN_RULES_H
-#define CONIC_GAUSSIAN_RULES_H
+#pragma once
 
 #ifdef CONIC_ON_DEVICE
 #include "conic/image.h"
@@ -50,6 +49,4 @@ typedef struct conic_gaussian_rules {
 #ifndef CONIC_ON_DEVICE
 /* Null for a number that is no profile. */
 const conic_gaussian_rules *conic_gaussian_rules_of(conic_gaussian_profile profile);
-#endif
-
 #endif

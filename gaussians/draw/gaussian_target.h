@@ -1,6 +1,5 @@
 /* What a tile begins with, and how it comes to the picture. C and OpenCL C share this text. */
-#ifndef CONIC_GAUSSIAN_TARGET_H
-#define CONIC_GAUSSIAN_TARGET_H
+#pragma once
 
 #include <string.h>
 
@@ -57,5 +56,3 @@ static inline void conic_gaussian_tile_end(const conic_gaussian_target *to, cons
       conic_gaussian_put_pixel(to, tile, at, (size_t)y * (size_t)to->width + (size_t)x);
   }
 }
-
-#endif

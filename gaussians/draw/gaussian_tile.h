@@ -1,8 +1,7 @@
 /* A tile of 16 × 16 pixels while Gaussians are composited in it, nearest first.
  *
  * Its pixels come block by block of 4 × 4, the blocks row by row, and the pixels of a block column by column. */
-#ifndef CONIC_GAUSSIAN_TILE_H
-#define CONIC_GAUSSIAN_TILE_H
+#pragma once
 
 #include "core/lanes/instruction_sets.h"
 #include "gaussians/draw/gaussian_footprint.h"
@@ -74,6 +73,4 @@ typedef struct conic_gaussian_loops {
 } conic_gaussian_loops;
 
 CONIC_DECLARE_LOOPS(conic_gaussian_loops);
-#endif
-
 #endif

@@ -1,6 +1,5 @@
 /* Where rays meet Gaussians in plain C: under a filter, and of cameras whose rays are not affine on the screen. */
-#ifndef CONIC_RAY_MEETINGS_H
-#define CONIC_RAY_MEETINGS_H
+#pragma once
 
 #include <math.h>
 
@@ -51,5 +50,3 @@ static inline conic_ray_meeting conic_meet_sight(const conic_gaussian_list *list
                              (r->e[0] + r->e[1] * d[0] + r->e[2] * d[1] + r->e[3] * d[2]) * one_over,
                              list->footprints[i_footprint].opacity};
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* The rays of all pixels of a picture, for cameras whose rays are not affine on the screen. */
-#ifndef CONIC_VIEW_RAYS_H
-#define CONIC_VIEW_RAYS_H
+#pragma once
 
 #include "gaussians/draw/gaussian_tile.h"
 
@@ -28,5 +27,3 @@ int conic_view_rays_box(const conic_view_rays *rays, const double center[3], dou
 
 /* The direction of the ray towards a place in camera space, or of another ray where there is none. */
 void conic_view_rays_towards(const conic_camera *camera, const double place[3], double direction[3]);
-
-#endif

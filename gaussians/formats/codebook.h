@@ -1,6 +1,5 @@
 /* Numbers by the nearest of a few: 256 for numbers of one kind, 65536 for the harmonics of a Gaussian together. */
-#ifndef CONIC_CODEBOOK_H
-#define CONIC_CODEBOOK_H
+#pragma once
 
 #include "gaussians/scene/gaussian_set.h"
 
@@ -21,5 +20,3 @@ unsigned char conic_codebook_find(const float codebook[CONIC_CODES], float value
  * group of vector i, and centroids[group × n_numbers] its mean; the caller releases it. Errors: MEMORY, CANCELLED. */
 conic_status conic_palette_make(conic_context *context, const conic_gaussians *gaussians, size_t n_numbers,
                                 uint32_t *labels, float **centroids, size_t *n_centroids);
-
-#endif

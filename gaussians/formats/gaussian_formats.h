@@ -1,6 +1,5 @@
 /* The formats of Gaussian scenes, a file or two each; conic_gaussians_read and _write choose among them. */
-#ifndef CONIC_GAUSSIAN_FORMATS_H
-#define CONIC_GAUSSIAN_FORMATS_H
+#pragma once
 
 #include "core/base/byte_order.h"
 #include "core/files/mapping.h"
@@ -90,5 +89,3 @@ int conic_find_left_out(double q[4], double (*rounded)(double value));
  * MEMORY. */
 conic_status conic_gaussians_copy_lent(conic_context *context, const char *name, const conic_gaussians *lent,
                                        const conic_gaussians_read_options *options, conic_gaussians *gaussians);
-
-#endif

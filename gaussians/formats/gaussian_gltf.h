@@ -1,6 +1,5 @@
 /* The parts of a glTF that Gaussians are read from: its JSON, as far as it matters to them, and its buffers. */
-#ifndef CONIC_GAUSSIAN_GLTF_H
-#define CONIC_GAUSSIAN_GLTF_H
+#pragma once
 
 #include "core/files/json_read.h"
 #include "gaussians/formats/gaussian_formats.h"
@@ -74,5 +73,3 @@ void conic_gltf_release(conic_gltf_reader *reader);
 
 /* "FILE: what is wrong (at byte 0)". */
 conic_status conic_gltf_wrong(const conic_gltf_reader *reader, const char *what);
-
-#endif

@@ -1,6 +1,5 @@
 /* How .spz, versions 1 to 4, lies in a file. */
-#ifndef CONIC_SPZ_LAYOUT_H
-#define CONIC_SPZ_LAYOUT_H
+#pragma once
 
 #include "gaussians/formats/gaussian_formats.h"
 
@@ -24,5 +23,3 @@ static inline conic_spz_layout conic_spz_find_layout(uint32_t version, int sh_de
     layout.all_bytes += layout.bytes[i];
   return layout;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Pictures of four bytes a pixel as lossless WebP, through libwebp where it is there. */
-#ifndef CONIC_WEBP_PLANE_H
-#define CONIC_WEBP_PLANE_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -14,5 +13,3 @@ conic_status conic_webp_decode(conic_context *context, const char *name, const u
 /* Every byte as it is, whatever alpha says. Errors: MEMORY, UNSUPPORTED. */
 conic_status conic_webp_encode(conic_context *context, const unsigned char *pixels, const size_t size[2],
                                unsigned char **bytes, size_t *n_bytes);
-
-#endif

@@ -1,6 +1,5 @@
 /* A tile's list, cut up by blocks of 4 × 4 pixels: which of them a Gaussian may cover, and what it needs there. */
-#ifndef CONIC_GAUSSIAN_BLOCKS_LANES_H
-#define CONIC_GAUSSIAN_BLOCKS_LANES_H
+#pragma once
 
 #include "core/lanes/lanes.h"
 #include "gaussians/draw/gaussian_tile.h"
@@ -93,5 +92,3 @@ CONIC_INLINE size_t list_block(const uint32_t *blocks, size_t n, int block, uint
                              lanes_ascending((uint32_t)i));
   return n_listed;
 }
-
-#endif

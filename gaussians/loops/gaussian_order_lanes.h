@@ -1,7 +1,6 @@
 /* The order of Gaussians along rays, one a lane: a merge sort of keys by minima and maxima alone, since a network of
  * them takes the same way at every ray. */
-#ifndef CONIC_GAUSSIAN_ORDER_LANES_H
-#define CONIC_GAUSSIAN_ORDER_LANES_H
+#pragma once
 
 #include "core/base/real.h"
 #include "core/lanes/lanes.h"
@@ -127,5 +126,3 @@ CONIC_INLINE float least_key_at(const depth_keys *by, float border) {
   uint32_t bits = (conic_bits_of_float(border) - by->nearest) >> by->shift;
   return bits >> (KEY_BITS - by->n_bits) ? __builtin_inff() : conic_float_of_bits(bits << by->n_bits);
 }
-
-#endif

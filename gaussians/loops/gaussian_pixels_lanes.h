@@ -1,6 +1,5 @@
 /* Pixels in registers while Gaussians are composited in them: a vector of a block. */
-#ifndef CONIC_GAUSSIAN_PIXELS_LANES_H
-#define CONIC_GAUSSIAN_PIXELS_LANES_H
+#pragma once
 
 #include "core/lanes/lanes.h"
 #include "gaussians/draw/gaussian_tile.h"
@@ -123,6 +122,4 @@ CONIC_INLINE lanes lanes_gather(const float *base, index_lanes at) {
   return value;
 #endif
 }
-#endif
-
 #endif

@@ -1,7 +1,6 @@
 /* Gaussians along the rays of pixels, ordered pixel by pixel. A vector of pixels first finds where its rays meet each
  * Gaussian, then goes through the meetings in each ray's order. */
-#ifndef CONIC_GAUSSIAN_RAYS_LANES_H
-#define CONIC_GAUSSIAN_RAYS_LANES_H
+#pragma once
 
 #include "gaussians/loops/gaussian_blocks_lanes.h"
 #include "gaussians/loops/gaussian_pixels_lanes.h"
@@ -302,5 +301,4 @@ static void composite_sights_in_lanes(const conic_gaussian_list *list, conic_gau
   composite_rays_block_by_block(list, tile, CONIC_SHAPE_SIGHT, list->wants_all);
 }
 
-#endif
 #endif

@@ -1,6 +1,5 @@
 /* What gaussians/draw/ray_meetings.h says, in lanes. */
-#ifndef CONIC_RAY_MEETINGS_LANES_H
-#define CONIC_RAY_MEETINGS_LANES_H
+#pragma once
 
 #include "core/lanes/lanes.h"
 #include "gaussians/draw/gaussian_tile.h"
@@ -52,5 +51,4 @@ CONIC_INLINE meeting_lanes meet_sight_lanes(const conic_gaussian_list *list, uin
                          .z = (r->e[0] + r->e[1] * d[0] + r->e[2] * d[1] + r->e[3] * d[2]) * one_over};
 }
 
-#endif
 #endif

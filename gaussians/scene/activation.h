@@ -1,6 +1,5 @@
 /* Scales and opacities as they are used, and as 3D Gaussian splatting trains and keeps them: ln s, logit o. */
-#ifndef CONIC_ACTIVATION_H
-#define CONIC_ACTIVATION_H
+#pragma once
 
 #include "conic/gaussians.h"
 
@@ -17,5 +16,3 @@ float conic_logit_of_opacity(float opacity);
 /* Makes scales of the logarithms, and opacities of the logits, that a reader has put in their places; keeps these where
  * the set has arrays for them. Errors: CANCELLED. */
 conic_status conic_gaussians_activate(conic_context *context, conic_gaussians *gaussians);
-
-#endif

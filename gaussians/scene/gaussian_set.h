@@ -1,6 +1,5 @@
 /* What the readers and writers of Gaussian scenes share about the set itself. */
-#ifndef CONIC_GAUSSIAN_SET_H
-#define CONIC_GAUSSIAN_SET_H
+#pragma once
 
 #include "conic/gaussians.h"
 #include "gaussians/scene/half.h"
@@ -49,5 +48,3 @@ void conic_gaussians_rotate(conic_context *context, conic_gaussians *gaussians, 
 
 /* Whether a set that a caller hands in is whole. Errors: ARGUMENT. */
 conic_status conic_gaussians_check(conic_context *context, const conic_gaussians *gaussians, const char *name);
-
-#endif

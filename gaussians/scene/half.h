@@ -1,6 +1,5 @@
 /* Numbers of 16 bits, as IEEE 754's binary16 has them. */
-#ifndef CONIC_HALF_H
-#define CONIC_HALF_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -25,5 +24,3 @@ static inline uint16_t conic_half_of_float(float value) {
   }
   return (uint16_t)(sign | (magnitude - 0x38000000 + 0xfff + (magnitude >> 13 & 1)) >> 13);
 }
-
-#endif

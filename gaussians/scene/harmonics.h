@@ -1,6 +1,5 @@
 /* Real spherical harmonics, with the signs of 3D Gaussian splatting, and what turning does to them. */
-#ifndef CONIC_HARMONICS_H
-#define CONIC_HARMONICS_H
+#pragma once
 
 #include "conic/gaussians.h"
 
@@ -16,5 +15,3 @@ void conic_harmonics_find_turn(const double rotation[3][3], conic_harmonics_turn
 
 /* Turns one Gaussian's harmonics, as conic_gaussians keeps them. */
 void conic_harmonics_apply(conic_harmonics_turn turn, int degree, float *sh);
-
-#endif

@@ -1,6 +1,5 @@
 /* A scene of Gaussians that is like what is trained from photographs, and needs no file. */
-#ifndef CONIC_MADE_GAUSSIANS_H
-#define CONIC_MADE_GAUSSIANS_H
+#pragma once
 
 #include "conic/gaussians.h"
 
@@ -10,5 +9,3 @@
  * is empty. Errors: ARGUMENT (the degree, or no or over 2³¹ − 1 Gaussians), MEMORY. */
 conic_status conic_gaussians_make(conic_context *context, size_t count, int sh_degree, uint64_t seed,
                                   conic_gaussians *gaussians);
-
-#endif

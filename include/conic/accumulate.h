@@ -13,9 +13,7 @@
 #include "conic/context.h"
 #include "conic/image.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 #define CONIC_MAX_ACCUMULATED (1u << 24)
 #define CONIC_MAX_BLADES 64
@@ -133,7 +131,5 @@ CONIC_API void conic_accumulate_options_init_sized(conic_accumulate_options *opt
 CONIC_API conic_status conic_accumulate(conic_context *context, const conic_accumulate_options *options,
                                         conic_accumulation *sums);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

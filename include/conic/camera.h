@@ -12,9 +12,7 @@
 
 #include "conic/context.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 typedef enum conic_camera_kind {
   CONIC_CAMERA_PERSPECTIVE,     /* (x/z, y/z) */
@@ -78,7 +76,5 @@ CONIC_API conic_status conic_camera_frame(conic_context *context, const conic_fr
  * keys are ignored. Errors: INPUT, MEMORY, UNSUPPORTED; *camera is then as it was. */
 CONIC_API conic_status conic_camera_read(conic_context *context, const char *path, conic_camera *camera);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

@@ -10,9 +10,7 @@
 #include "conic/camera.h"
 #include "conic/context.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 typedef enum conic_camera_file {
   CONIC_CAMERA_FILE_CONIC,      /* JSON of one camera: conic_camera_read */
@@ -67,7 +65,5 @@ CONIC_API conic_status conic_cameras_find(conic_context *context, const conic_ca
 /* The same view in another size: focal lengths and centre scale with the picture, each axis by itself. */
 CONIC_API void conic_camera_resize(conic_camera *camera, int width, int height);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

@@ -11,9 +11,7 @@
 #include "conic/splats.h"
 #include "conic/triangles.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 typedef struct conic_coloring_options {
   size_t size; /* sizeof(conic_coloring_options), set by the init function */
@@ -62,7 +60,5 @@ CONIC_API void conic_coloring_read(const conic_coloring_options *options, conic_
 CONIC_API conic_status conic_drawing_color(conic_context *context, const conic_coloring_options *options,
                                            conic_splats *splats, conic_triangles *triangles, conic_coloring *coloring);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

@@ -10,9 +10,7 @@
 #include "conic/isa.h"
 #include "conic/status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 typedef struct conic_context conic_context;
 
@@ -77,7 +75,5 @@ CONIC_API void conic_context_destroy(conic_context *context);
 /* The number of threads that compute, at least 1. */
 CONIC_API int conic_context_threads(const conic_context *context);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

@@ -14,9 +14,7 @@
 #include "conic/splats.h"
 #include "conic/triangles.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 /* What becomes of a splat in a frame. */
 typedef enum conic_fate {
@@ -118,7 +116,5 @@ CONIC_API conic_status conic_contributions_triangles_at(conic_contributions *con
 CONIC_API conic_status conic_contributions_write(conic_contributions *contributions, const char *path,
                                                  const conic_image *header);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

@@ -5,9 +5,7 @@
 
 #include "conic/splats.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 typedef enum conic_csg_operation {
   CONIC_CSG_UNION = 0,        /* what is in either */
@@ -31,7 +29,5 @@ CONIC_API conic_status conic_splats_csg(conic_context *context, const conic_spla
                                         conic_csg_operation operation, float cutoff, conic_splats *result,
                                         conic_csg_report *report);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

@@ -6,9 +6,7 @@
 #include "conic/gaussian_judge.h"
 #include "conic/triangles.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 typedef struct conic_diagnosis {
   const char *name; /* of a mistake, "half-pixel" …, or of a profile; static */
@@ -40,7 +38,5 @@ CONIC_API conic_status conic_drawing_diagnose(conic_context *context, const coni
 /* What a name stands for, in a sentence: "Pixel centres are half a pixel off." Static; null for an unknown name. */
 CONIC_API const char *conic_diagnosis_meaning(const char *name);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

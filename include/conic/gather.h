@@ -11,9 +11,7 @@
 #include "conic/context.h"
 #include "conic/image.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 /* A view to be drawn. */
 typedef struct conic_gather_view {
@@ -56,7 +54,5 @@ CONIC_API void conic_gather_options_init_sized(conic_gather_options *options, si
  * CANCELLED, and what `draw` returns. */
 CONIC_API conic_status conic_gather(conic_context *context, const conic_gather_options *options, conic_image *image);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

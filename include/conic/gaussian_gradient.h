@@ -8,9 +8,7 @@
 
 #include "conic/gaussian_judge.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 /* W: of width × height pixels, row by row from the top. Null: 0. */
 typedef struct conic_gaussian_weights {
@@ -140,7 +138,5 @@ CONIC_API conic_status conic_gaussian_gradient_judge(conic_context *context, con
                                                      const conic_gaussian_gradient *theirs, uint8_t *classes,
                                                      conic_gradient_verdict *verdict);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

@@ -6,9 +6,7 @@
 #include "conic/gaussian_render.h"
 #include "conic/oracle.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 typedef struct conic_float_model {
   size_t size;            /* sizeof(conic_float_model), set by the init function */
@@ -164,7 +162,5 @@ CONIC_API conic_status conic_gaussian_explain(conic_context *context, const coni
                                               conic_gaussian_listing *listing);
 CONIC_API void conic_gaussian_listing_release(conic_context *context, conic_gaussian_listing *listing);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

@@ -5,9 +5,7 @@
 
 #include "conic/gaussian_render.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 typedef enum conic_gaussian_question {
   CONIC_GAUSSIAN_PROFILE = 0, /* is the arithmetic right? The profile's own formulas, in double */
@@ -42,7 +40,5 @@ CONIC_API conic_status conic_gaussian_oracle_render(conic_context *context, cons
 
 CONIC_API void conic_gaussian_reference_release(conic_context *context, conic_gaussian_reference *reference);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

@@ -11,9 +11,7 @@
 #include "conic/image.h"
 #include "conic/isa.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 /* What a renderer does with a Gaussian. A profile that is named after a program draws what that version of the program
  * draws; it never changes. */
@@ -85,7 +83,5 @@ CONIC_API conic_status conic_gaussians_render(conic_context *context, const coni
                                               const conic_camera *camera, const conic_gaussian_options *options,
                                               conic_gaussian_planes *planes, conic_gaussian_statistics *statistics);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

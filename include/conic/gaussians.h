@@ -13,9 +13,7 @@
 #include "conic/context.h"
 #include "conic/model.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 enum { CONIC_MAX_SH_DEGREE = 4 };
 
@@ -175,7 +173,5 @@ typedef struct conic_gaussians_differences {
 CONIC_API conic_status conic_gaussians_compare(conic_context *context, const conic_gaussians *a,
                                                const conic_gaussians *b, conic_gaussians_differences *differences);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

@@ -14,9 +14,7 @@
 #include "conic/splats.h"
 #include "conic/triangles.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 typedef struct conic_hybrid conic_hybrid;
 
@@ -202,7 +200,5 @@ CONIC_API void conic_hybrid_name(const conic_hybrid_selection *selection, conic_
 
 CONIC_API void conic_hybrid_selection_release(conic_context *context, conic_hybrid_selection *selection);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

@@ -11,9 +11,7 @@
 #include "conic/camera.h"
 #include "conic/context.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 typedef enum conic_plane {
   CONIC_PLANE_RGBA = 0,     /* 4 floats: R, G, B premultiplied by A */
@@ -259,7 +257,5 @@ CONIC_API conic_status conic_image_overdraw(conic_context *context, const conic_
 CONIC_API conic_status conic_image_overdraw_confetti(conic_context *context, const conic_image *image,
                                                      conic_image *map);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

@@ -4,9 +4,7 @@
 
 #include "conic/status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 /* On one machine, each set includes all sets before it. */
 typedef enum conic_isa {
@@ -26,7 +24,5 @@ CONIC_API const char *conic_isa_name(conic_isa isa);
 /* The widest that this machine has. */
 CONIC_API conic_isa conic_isa_best(void);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

@@ -9,9 +9,7 @@
 #include "conic/context.h"
 #include "conic/splats.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 typedef struct conic_layers_options {
   size_t size;           /* sizeof(conic_layers_options), set by the init function */
@@ -104,7 +102,5 @@ typedef struct conic_layers_defects {
  * UNSUPPORTED, CANCELLED. */
 CONIC_API conic_status conic_layers_check(conic_context *context, const char *path, conic_layers_defects *defects);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

@@ -16,9 +16,7 @@
 #include "conic/splats.h"
 #include "conic/transparency.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 /* A file that is open for drawing: its index, and a cache of its clouds. One thread at a time. */
 typedef struct conic_layers conic_layers;
@@ -186,7 +184,5 @@ CONIC_API void conic_layers_continue(const conic_layers *layers, conic_layers_op
 CONIC_API conic_status conic_layers_draw_boxes(conic_layers *layers, const conic_camera *camera, int level,
                                                const conic_image *image, conic_image *map);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

@@ -13,9 +13,7 @@
 #include "conic/render.h"
 #include "conic/splats.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 /* Draws what casts shadows into the plane Z of `depth`, which has the camera's size and is zero. Nothing nearer than
  * near_z is drawn. Called by the thread that asked for light, one picture at a time. Any status but OK ends the
@@ -140,7 +138,5 @@ CONIC_API conic_status conic_splats_occlude(conic_context *context, const conic_
                                             const conic_splats *splats, double spacing,
                                             const conic_lighting_options *options, float *ao);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

@@ -5,9 +5,7 @@
 
 #include "conic/context.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 /* From now on `name` stands for `what`. The name is copied. The context reads `what` and never changes it; it must
  * exist until it is taken back. The name begins with the kind of set:
@@ -24,7 +22,5 @@ CONIC_API conic_status conic_lend(conic_context *context, const char *name, cons
 /* Takes back everything that was lent. Sources opened from it must be closed before. */
 CONIC_API void conic_take_back_loans(conic_context *context);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

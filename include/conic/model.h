@@ -8,9 +8,7 @@
 #include "conic/context.h"
 #include "conic/splats.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 /* The formats that models are read from. */
 typedef enum conic_model_kind {
@@ -210,7 +208,5 @@ CONIC_API void conic_splats_writer_abandon(conic_splats_writer *writer);
 CONIC_API conic_status conic_splats_write(conic_context *context, const char *path, const conic_splats *splats,
                                           const conic_write_options *options);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

@@ -5,9 +5,7 @@
 
 #include "conic/source.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 typedef struct conic_motion conic_motion;
 
@@ -25,7 +23,5 @@ CONIC_API void conic_motion_destroy(conic_motion *motion);
  * (conic_camera_between's). */
 CONIC_API conic_status conic_motion_apply(conic_motion *motion, conic_source *source, double frame);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

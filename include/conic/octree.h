@@ -12,9 +12,7 @@
 #include "conic/render.h"
 #include "conic/splats.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 typedef struct conic_octree conic_octree;
 
@@ -129,7 +127,5 @@ CONIC_API void conic_selection_name(const conic_selection *selection, conic_imag
 /* Releases the memory that selecting has kept, and leaves an empty selection. */
 CONIC_API void conic_selection_release(conic_context *context, conic_selection *selection);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

@@ -9,9 +9,7 @@
 #include "conic/gaussian_render.h"
 #include "conic/render.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 typedef struct conic_opencl_device {
   int i_platform, i_device; /* its name is opencl:P.D */
@@ -65,7 +63,5 @@ CONIC_API conic_status conic_opencl_renderer_create(conic_context *context, cons
  * like it, draws for one caller at a time. Null where the renderer draws on the processor. */
 CONIC_API conic_gaussian_device *conic_opencl_gaussian_device(conic_renderer *renderer);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

@@ -16,9 +16,7 @@
 #include "conic/splats.h"
 #include "conic/triangles.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 typedef enum conic_oracle_question {
   CONIC_ORACLE_METHOD = 0, /* is the arithmetic right? The method's own formula, in double */
@@ -258,7 +256,5 @@ CONIC_API conic_status conic_oracle_probe(conic_context *context, const conic_or
                                           const conic_camera *camera, const conic_render_options *options,
                                           const double (*places)[2], size_t n, conic_oracle_sample *samples);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

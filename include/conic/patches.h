@@ -18,9 +18,7 @@
 #include "conic/splats.h"
 #include "conic/surface.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 typedef struct conic_patches_options {
   size_t size;                   /* sizeof(conic_patches_options), set by the init function */
@@ -82,7 +80,5 @@ CONIC_API conic_status conic_patches_select(conic_patches *patches, const conic_
 /* Replaces the numbers in an image's id plane, which are indices in the selection, by the points' numbers. */
 CONIC_API void conic_patch_selection_name(const conic_patch_selection *selection, conic_image *image);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

@@ -6,9 +6,7 @@
 
 #include "conic/image.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 /* How codes were made of values. */
 typedef enum conic_code_rounding {
@@ -55,7 +53,5 @@ CONIC_API conic_status conic_picture_take(conic_context *context, conic_image *i
 
 CONIC_API void conic_picture_release(conic_context *context, conic_picture *picture);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

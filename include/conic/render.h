@@ -14,9 +14,7 @@
 #include "conic/isa.h"
 #include "conic/splats.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 /* How a splat is projected and weighed. */
 typedef enum conic_method {
@@ -186,7 +184,5 @@ CONIC_API conic_status conic_render_samples(conic_context *context, conic_render
                                             const conic_render_options *options, int samples, conic_image *image,
                                             conic_render_statistics *statistics);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

@@ -8,9 +8,7 @@
 #include "conic/context.h"
 #include "conic/splats.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 typedef enum conic_scene_type {
   CONIC_SCENE_PLANE = 0,   /* the unit square [-½, ½]² in z = 0, facing +z; a checkerboard of 8 × 8 in the
@@ -68,7 +66,5 @@ CONIC_API conic_status conic_scene_sample(conic_scene *scene, size_t first, size
 /* Null is allowed. */
 CONIC_API void conic_scene_destroy(conic_scene *scene);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

@@ -20,9 +20,7 @@
 #include "conic/render.h"
 #include "conic/source.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 /* Where the camera goes while the shutter is open. */
 typedef enum conic_way_kind {
@@ -174,7 +172,5 @@ CONIC_API conic_status conic_shot_sample(conic_source *source, const conic_shot 
 CONIC_API conic_status conic_shot_camera(conic_context *context, const conic_shot *shot, double time,
                                          conic_camera *camera);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

@@ -7,9 +7,7 @@
 
 #include "conic/shot.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 /* What a file is to a picture. */
 typedef enum conic_shot_role {
@@ -143,7 +141,5 @@ typedef struct conic_shot_field {
 /* The fields from 0 on; returns 0 after the last. */
 CONIC_API int conic_shot_field_at(size_t i, conic_shot_field *field);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

@@ -21,9 +21,7 @@
 #include "conic/transparency.h"
 #include "conic/triangles.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 /* What is drawn, and the memory that drawing it keeps. One thread at a time. */
 typedef struct conic_source conic_source;
@@ -294,7 +292,5 @@ CONIC_API const conic_fact *conic_facts_at(const conic_facts *facts, size_t i);
 /* Null is allowed. */
 CONIC_API void conic_facts_destroy(conic_facts *facts);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

@@ -13,9 +13,7 @@
 #include "conic/camera.h"
 #include "conic/context.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 /* How the two lines of a splat combine. */
 typedef enum conic_clip_operator {
@@ -148,7 +146,5 @@ CONIC_API conic_status conic_splats_length(conic_context *context, const conic_s
  * CANCELLED. */
 CONIC_API conic_status conic_splats_spacing(conic_context *context, const conic_splats *splats, double *spacing);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

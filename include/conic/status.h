@@ -7,9 +7,7 @@
 
 #include "conic/export.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 /* The values are pinned: a later version adds to them and never renumbers. */
 typedef enum conic_status {
@@ -31,7 +29,5 @@ typedef enum conic_status {
 /* A few English words for `status`; never null. The string is static. */
 CONIC_API const char *conic_status_string(conic_status status);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

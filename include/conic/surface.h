@@ -15,9 +15,7 @@
 #include "conic/render.h"
 #include "conic/splats.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 typedef enum conic_surface_type {
   CONIC_SURFACE_MLS = 0, /* a polynomial over the local plane */
@@ -210,7 +208,5 @@ CONIC_API conic_status conic_surface_densify(conic_surface *surface, const conic
 CONIC_API conic_status conic_surface_deviation(conic_surface *from, conic_surface *to,
                                                conic_surface_distance *distance);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

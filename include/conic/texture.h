@@ -5,9 +5,7 @@
 #include "conic/context.h"
 #include "conic/image.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 /* What is seen beyond the picture's borders. */
 typedef enum conic_texture_wrap {
@@ -49,7 +47,5 @@ CONIC_API int conic_texture_has_alpha(const conic_texture *texture);
 CONIC_API void conic_texture_sample_rgba(const conic_texture *texture, const float uv[2], const float along[2],
                                          const float across[2], float rgba[4]);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

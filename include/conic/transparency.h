@@ -5,9 +5,7 @@
 #include "conic/render.h"
 #include "conic/triangles.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 /* How a picture shows it. */
 typedef enum conic_transparency {
@@ -33,7 +31,5 @@ CONIC_API conic_status conic_render_transparent(conic_context *context, conic_re
 /* Whether a drawing lets light through anywhere. */
 CONIC_API int conic_drawing_is_transparent(const conic_drawing *drawing);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

@@ -14,9 +14,7 @@
 #include "conic/splats.h"
 #include "conic/texture.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 /* What a material's alpha means where pictures show transparency. Alpha is (1 - transparency) × the texture's × the
  * vertices'. */
@@ -170,7 +168,5 @@ CONIC_API conic_status conic_render_drawing(conic_context *context, conic_render
                                             const conic_render_options *options, int samples, conic_image *image,
                                             conic_render_statistics *statistics);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

@@ -4,9 +4,7 @@
 
 #include "conic/export.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+CONIC_BEGIN_C
 
 #define CONIC_VERSION_MAJOR 0
 #define CONIC_VERSION_MINOR 6
@@ -26,7 +24,5 @@ typedef struct conic_feature {
 /* The i-th feature, or null past the last; static. */
 CONIC_API const conic_feature *conic_feature_at(int i);
 
-#ifdef __cplusplus
-}
-#endif
+CONIC_END_C
 #endif

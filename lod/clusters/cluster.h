@@ -1,6 +1,5 @@
 /* The clusters of a mesh: what their surface is at a place, and where they meet. */
-#ifndef CONIC_CLUSTER_H
-#define CONIC_CLUSTER_H
+#pragma once
 
 #include "lod/mesh/mesh_clusters.h"
 
@@ -97,5 +96,3 @@ typedef struct conic_cluster_chains {
 conic_status conic_cluster_chains_find(conic_context *context, const conic_clustered_mesh *mesh, const uint32_t *region,
                                        conic_cluster_chains *chains);
 void conic_cluster_chains_release(conic_context *context, conic_cluster_chains *chains);
-
-#endif

@@ -1,6 +1,5 @@
 /* Surfels of a cluster: splats that stand for its faces. */
-#ifndef CONIC_CLUSTER_SAMPLE_H
-#define CONIC_CLUSTER_SAMPLE_H
+#pragma once
 
 #include "lod/clusters/cluster_seen.h"
 #include "lod/mesh/face_tree.h"
@@ -57,5 +56,3 @@ conic_status conic_cluster_sample_box(conic_context *context, const conic_sampli
 /* Room for one more. Errors: MEMORY. */
 conic_status conic_surfels_reserve(conic_context *context, conic_surfels *surfels);
 void conic_surfels_release(conic_context *context, conic_surfels *surfels);
-
-#endif

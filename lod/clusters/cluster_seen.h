@@ -1,7 +1,6 @@
 /* Colours of a mesh as they are seen. A step is a hundredth of the way from black to white in OKLab; two steps are just
  * visible. */
-#ifndef CONIC_CLUSTER_SEEN_H
-#define CONIC_CLUSTER_SEEN_H
+#pragma once
 
 #include "lod/clusters/cluster.h"
 
@@ -61,5 +60,3 @@ conic_seen_change conic_seen_change_of(const conic_triangles *triangles, const c
 /* The point of a triangle that is nearest to a place, in barycentric coordinates. Returns the squared distance, as
  * conic_distance2_to_triangle has it. */
 double conic_seen_nearest(const double at[3], const double *const corners[3], double bary[3]);
-
-#endif

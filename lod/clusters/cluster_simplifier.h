@@ -1,7 +1,6 @@
 /* What simplifying works on: the triangles of a region, vertices with their quadrics, and the places of the mesh by
  * which errors are measured. Private to lod/clusters/cluster_simplify*.c. */
-#ifndef CONIC_CLUSTER_SIMPLIFIER_H
-#define CONIC_CLUSTER_SIMPLIFIER_H
+#pragma once
 
 #include "core/base/heap.h"
 #include "lod/clusters/cluster_simplify.h"
@@ -188,5 +187,3 @@ void conic_simplifier_normals_release(const conic_simplifier *s, conic_simplifie
 
 /* Takes what is alive as the levels of the stage. Errors: MEMORY. */
 conic_status conic_simplifier_take(conic_simplifier *s);
-
-#endif

@@ -1,6 +1,5 @@
 /* Simpler and simpler triangles for the clusters of a region, which are simplified together. */
-#ifndef CONIC_CLUSTER_SIMPLIFY_H
-#define CONIC_CLUSTER_SIMPLIFY_H
+#pragma once
 
 #include "lod/clusters/cluster_seen.h"
 #include "lod/mesh/face_tree.h"
@@ -71,5 +70,3 @@ void conic_region_measure(conic_simplifier *simplifier, uint32_t cluster);
 void conic_region_end(conic_simplifier *simplifier);
 
 void conic_cluster_levels_release(conic_context *context, conic_cluster_levels *levels);
-
-#endif

@@ -1,6 +1,5 @@
 /* Making the surfels of a cluster: the places that they are put at, and what each of them stands for. */
-#ifndef CONIC_CLUSTER_SITES_H
-#define CONIC_CLUSTER_SITES_H
+#pragma once
 
 #include "core/base/radix.h"
 #include "core/splats/ellipse.h"
@@ -209,5 +208,3 @@ void conic_cluster_end_pass(conic_sampler *sampler);
 /* Called when new sites and owners have been found. A site is settled where all that it stands for, and all that lies
  * on the same faces, belongs to the same sites as in the last pass. It then takes over all that it had there. */
 void conic_cluster_settle_sites(conic_sampler *sampler);
-
-#endif

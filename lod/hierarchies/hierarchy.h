@@ -5,8 +5,7 @@
  * A node's place is a cell of the octree: the root's, or an eighth of its parent's. Its name is the 63-bit Morton code
  * of its low corner (lod/layers/format/layers_key.h), and its level. The points of its node and of all nodes above it
  * that lie in a place are drawn there. */
-#ifndef CONIC_HIERARCHY_H
-#define CONIC_HIERARCHY_H
+#pragma once
 
 #include "core/files/json_read.h"
 #include "core/pictures/georeference.h"
@@ -179,5 +178,3 @@ const char *conic_hierarchy_take_chunk(const conic_hierarchy *hierarchy, const u
 /* The same of a whole .laz, or .las, of so many points. */
 const char *conic_hierarchy_take_laz(conic_context *context, const unsigned char *bytes, size_t n_bytes,
                                      conic_hierarchy_points *points);
-
-#endif

@@ -1,6 +1,5 @@
 /* Normals and sizes for points that come without: found from their neighbours in the node. */
-#ifndef CONIC_NODE_SHAPE_H
-#define CONIC_NODE_SHAPE_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -16,5 +15,3 @@ typedef struct conic_node_shape {
 /* One thread. Fills in normals and spacings; *median becomes the lower median of the spacings above 0, or 0. The same
  * points give the same bits everywhere. Errors: MEMORY. */
 conic_status conic_node_shape_find(conic_context *context, const conic_node_shape *shape, float *median);
-
-#endif

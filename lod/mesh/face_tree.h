@@ -1,6 +1,5 @@
 /* Boxes around boxes around a mesh's faces: how far a place is from the nearest. */
-#ifndef CONIC_FACE_TREE_H
-#define CONIC_FACE_TREE_H
+#pragma once
 
 #include "lod/mesh/mesh.h"
 
@@ -33,5 +32,3 @@ double conic_face_tree_bound(const conic_face_tree *tree, const double at[3], ui
 
 /* How far the place is from that face of the mesh: infinite where the face has no area and no distance. */
 double conic_face_distance(const conic_mesh *mesh, uint32_t face, const double at[3]);
-
-#endif

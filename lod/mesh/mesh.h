@@ -1,6 +1,5 @@
 /* Triangles as the steps of hybrid models look at them: which lie side by side, and which are of use. */
-#ifndef CONIC_MESH_H
-#define CONIC_MESH_H
+#pragma once
 
 #include "conic/triangles.h"
 #include "core/base/base.h"
@@ -82,5 +81,3 @@ int conic_has_face(float *const position[3], const uint32_t (*corners)[3], size_
  * normals that are round over edges up to the angle (degrees; 0: none). Errors: as conic_triangles_smooth's and
  * conic_triangles_crease's. */
 conic_status conic_mesh_round(conic_context *context, int is_smooth, double crease_deg, conic_triangles *triangles);
-
-#endif

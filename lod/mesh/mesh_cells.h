@@ -1,7 +1,6 @@
 /* A mesh of any size, split by planes into cells of few faces, each with the faces about it. Meanwhile, vertices and
  * faces lie in files without names. */
-#ifndef CONIC_MESH_CELLS_H
-#define CONIC_MESH_CELLS_H
+#pragma once
 
 #include "conic/triangles.h"
 
@@ -35,5 +34,3 @@ conic_mesh_counts conic_mesh_cells_counts(const conic_mesh_cells *cells);
 /* Takes the n_own faces of a cell, and behind them those of other cells that share a place with them. There may be no
  * faces. The caller releases *mesh. Errors: IO, MEMORY. */
 conic_status conic_mesh_cells_take(conic_mesh_cells *cells, size_t cell, conic_triangles *mesh, size_t *n_own);
-
-#endif

@@ -1,6 +1,5 @@
 /* Clusters of faces. At first what is flat together is joined, and then what is small is gathered (HQP §3.2). */
-#ifndef CONIC_MESH_CLUSTERS_H
-#define CONIC_MESH_CLUSTERS_H
+#pragma once
 
 #include "lod/mesh/mesh.h"
 
@@ -74,5 +73,3 @@ typedef struct conic_mesh_clusters {
 conic_status conic_mesh_clusters_find(conic_context *context, const conic_mesh *mesh, const conic_adjacency *adjacency,
                                       const conic_clustering_options *options, conic_mesh_clusters *clusters);
 void conic_mesh_clusters_release(conic_context *context, conic_mesh_clusters *clusters);
-
-#endif

@@ -1,6 +1,5 @@
 /* Sums of squared distances from planes, as a quadratic form of the place: vᵀAv + 2bᵀv + c (HQP Eq. 3.6). */
-#ifndef CONIC_QUADRIC_H
-#define CONIC_QUADRIC_H
+#pragma once
 
 #include "core/base/vectors.h"
 
@@ -30,5 +29,3 @@ static inline double conic_quadric_at(const conic_quadric *q, const double v[3])
                   2.0 * (q->a[1] * v[0] * v[1] + q->a[2] * v[0] * v[2] + q->a[4] * v[1] * v[2]);
   return (square + 2.0 * (q->b[0] * v[0] + q->b[1] * v[1] + q->b[2] * v[2])) + q->c;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* The inner nodes of a point-octree as they are kept: 19 bytes each. Numbers are rounded to the side on which the
  * bounds hold, and every bound is found for the numbers that the bytes give back (docs/reference/format-cot.md). */
-#ifndef CONIC_OCTREE_CODE_H
-#define CONIC_OCTREE_CODE_H
+#pragma once
 
 #include "conic/splats.h"
 
@@ -108,5 +107,3 @@ void conic_leaf_encode(conic_context *context, const conic_code_scale *scale, co
 /* Fills the arrays with what the codes give. */
 void conic_leaf_decode(conic_context *context, const conic_code_scale *scale, const unsigned char *codes,
                        conic_splats *leaves);
-
-#endif

@@ -1,7 +1,6 @@
 /* How far a node's disc reaches past a surface of discs. It is looked at in a few places. Those that lie well inside a
  * disc are found first. For the others, it is found how near the discs come. */
-#ifndef CONIC_OCTREE_COVER_H
-#define CONIC_OCTREE_COVER_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -74,5 +73,3 @@ typedef struct conic_node_disc {
  * first. */
 typedef float conic_cover_function(const conic_disc_samples *samples, const conic_discs *discs, size_t begin,
                                    size_t end, conic_near_discs *near, const conic_node_disc *node);
-
-#endif

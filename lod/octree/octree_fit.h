@@ -1,6 +1,5 @@
 /* What stands for many: the position, ellipse, colour and bounds of every inner node. */
-#ifndef CONIC_OCTREE_FIT_H
-#define CONIC_OCTREE_FIT_H
+#pragma once
 
 #include "core/splats/ellipse.h"
 #include "lod/octree/octree_nodes.h"
@@ -52,5 +51,3 @@ void conic_moments_of_splat(const conic_splats *splats, size_t i, conic_moments 
 
 /* Adds the sums of another set; `sum` may be all zero. */
 void conic_moments_merge(conic_moments *sum, const conic_moments *more);
-
-#endif

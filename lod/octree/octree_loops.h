@@ -1,6 +1,5 @@
 /* The loops that take the time of building and of choosing. */
-#ifndef CONIC_OCTREE_LOOPS_H
-#define CONIC_OCTREE_LOOPS_H
+#pragma once
 
 #include "core/lanes/instruction_sets.h"
 #include "lod/octree/octree_cover.h"
@@ -23,5 +22,3 @@ typedef struct conic_octree_loops {
 } conic_octree_loops;
 
 CONIC_DECLARE_LOOPS(conic_octree_loops);
-
-#endif

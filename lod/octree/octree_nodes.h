@@ -1,6 +1,5 @@
 /* The octree's inside, shared by its parts. */
-#ifndef CONIC_OCTREE_NODES_H
-#define CONIC_OCTREE_NODES_H
+#pragma once
 
 #include "conic/octree.h"
 #include "core/files/mapping.h"
@@ -119,5 +118,3 @@ typedef struct conic_split {
 
 /* Errors: MEMORY, CANCELLED. */
 conic_status conic_octree_split(conic_context *context, conic_split *split);
-
-#endif

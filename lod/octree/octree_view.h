@@ -1,6 +1,5 @@
 /* How large the errors of inner nodes are in one picture. */
-#ifndef CONIC_OCTREE_VIEW_H
-#define CONIC_OCTREE_VIEW_H
+#pragma once
 
 #include "lod/octree/octree_nodes.h"
 
@@ -53,5 +52,3 @@ static inline float conic_octree_look_up(const conic_octree *octree, const conic
 /* Finds the least error for which no more than `budget` splats are chosen. Errors: MEMORY. */
 conic_status conic_octree_fit_budget(const conic_octree *octree, const conic_octree_view *view, uint64_t budget,
                                      float *error_px);
-
-#endif

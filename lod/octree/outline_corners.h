@@ -1,6 +1,5 @@
 /* What plain C and lanes share to find the reach of leaves (octree_fit.h). */
-#ifndef CONIC_OUTLINE_CORNERS_H
-#define CONIC_OUTLINE_CORNERS_H
+#pragma once
 
 /* Leaves whose reach is compared with the same one before. */
 enum { CONIC_REACH_BATCH = 8 };
@@ -22,5 +21,3 @@ static const double conic_corners_y[CONIC_OUTLINE_CORNERS] = {0.0,
 /* Parts of a shape's ratio that choose_ratio tries. */
 enum { CONIC_N_RATIOS = 9 };
 static const double conic_ratio_factors[CONIC_N_RATIOS] = {0.5, 0.59, 0.68, 0.77, 0.86, 1.0, 1.15, 1.3, 1.5};
-
-#endif

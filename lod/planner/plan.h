@@ -1,7 +1,6 @@
 /* Finds the least error on the screen that a number of primitives can give: of trees in which nodes stand for what is
  * below them, as in octrees and layered clouds; and of whatever can be chosen for an error, as in hybrid models. */
-#ifndef CONIC_PLAN_H
-#define CONIC_PLAN_H
+#pragma once
 
 #include <stdint.h>
 
@@ -34,5 +33,3 @@ typedef uint64_t conic_plan_choose(void *data, double error_px, double *reached_
 /* Halves the errors above `low_px`, for which the budget is not enough, to one for which it is while it is not for the
  * next less: the least of all, if the number never grows with the error. Returns whether there is any. */
 int conic_plan_fit(conic_plan_choose *choose, void *data, uint64_t budget, double low_px, double *error_px);
-
-#endif

@@ -1,7 +1,6 @@
 /* The bridge to libcurl, a module of its own: libcurl's own libraries take longer to load than all else that the
  * program needs, and most runs ask no server for anything. */
-#ifndef CONIC_CURL_BRIDGE_H
-#define CONIC_CURL_BRIDGE_H
+#pragma once
 
 #include <curl/curl.h>
 
@@ -25,5 +24,3 @@ typedef struct conic_curl_bridge_functions {
   CURLMsg *(*multi_info_read)(CURLM *multi, int *n_left);
   CURLMcode (*multi_cleanup)(CURLM *multi);
 } conic_curl_bridge_functions;
-
-#endif

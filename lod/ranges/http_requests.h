@@ -1,6 +1,5 @@
 /* Which ranges a server is asked for next, in which requests, and what becomes of their answers. */
-#ifndef CONIC_HTTP_REQUESTS_H
-#define CONIC_HTTP_REQUESTS_H
+#pragma once
 
 #include "lod/ranges/http_transfer.h"
 
@@ -21,5 +20,4 @@ int conic_http_is_idle(const conic_http_ranges *http);
 /* How often a request that failed so is sent again. */
 int conic_http_most_repeats(const conic_http_ranges *http, conic_http_fault why);
 
-#endif
 #endif

@@ -1,6 +1,5 @@
 /* What the headers of a web server's response say about the file. */
-#ifndef CONIC_HTTP_RESPONSE_H
-#define CONIC_HTTP_RESPONSE_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -19,5 +18,3 @@ typedef struct conic_http_response {
 
 /* Takes one header line, its end included. 0 where there are more than anyone needs. */
 int conic_http_header(conic_http_response *response, const char *line, size_t n_bytes);
-
-#endif

@@ -1,6 +1,5 @@
 /* A request for a part of a file on a web server, and its answer as it comes. */
-#ifndef CONIC_HTTP_TRANSFER_H
-#define CONIC_HTTP_TRANSFER_H
+#pragma once
 
 #ifdef CONIC_HAVE_CURL
 
@@ -107,5 +106,4 @@ int conic_http_transfer_is_complete(conic_http_transfer *t, CURLcode code);
 /* Gives up one hold on bytes that arrived. The last hold releases them. */
 void conic_http_let_go(conic_http_ranges *http, conic_http_body *held);
 
-#endif
 #endif

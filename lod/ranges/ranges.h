@@ -3,8 +3,7 @@
  *
  * Transfers go on within conic_ranges_next, several at a time, and after conic_ranges_go_on; otherwise nothing happens
  * between the calls. One thread at a time. */
-#ifndef CONIC_RANGES_H
-#define CONIC_RANGES_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -91,5 +90,3 @@ conic_status conic_ranges_read(conic_ranges *ranges, const char *name, const con
 /* Makes the name of `file` in the folder of `name`, which may be a URL, or is a folder where it ends with a slash. The
  * caller releases *beside. Errors: MEMORY. */
 conic_status conic_ranges_name_beside(conic_context *context, const char *name, const char *file, char **beside);
-
-#endif

@@ -1,6 +1,5 @@
 /* A backend of lod/ranges/ranges.h. Its struct begins with a conic_ranges. */
-#ifndef CONIC_RANGES_BACKEND_H
-#define CONIC_RANGES_BACKEND_H
+#pragma once
 
 #include "lod/ranges/ranges.h"
 
@@ -47,5 +46,3 @@ struct conic_ranges {
 conic_status conic_ranges_open_file(conic_context *context, const char *path, conic_ranges **ranges);
 conic_status conic_ranges_open_url(conic_context *context, const char *url, const conic_ranges_options *options,
                                    conic_ranges **ranges);
-
-#endif

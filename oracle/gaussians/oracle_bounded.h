@@ -3,8 +3,7 @@
  * Every operation carries the bounds of its operands by their exact worst case, and adds what its own rounding may do:
  * `unit` of the largest value that it may round. So a bound holds whatever each rounding does, and also where there is
  * none, as in a fused product. (Wilkinson's running error analysis.) */
-#ifndef CONIC_ORACLE_BOUNDED_H
-#define CONIC_ORACLE_BOUNDED_H
+#pragma once
 
 #include "oracle/oracle_math.h"
 
@@ -66,5 +65,3 @@ static inline double bounded_high(bounded a) {
 static inline int bounded_is_finite(bounded a) {
   return oracle_is_finite(a.v) && oracle_is_finite(a.off);
 }
-
-#endif

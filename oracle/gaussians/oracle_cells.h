@@ -1,6 +1,5 @@
 /* Bounds of many pixels: Gaussians are binned by what they may reach, and each cell of pixels looks at its own. */
-#ifndef CONIC_ORACLE_CELLS_H
-#define CONIC_ORACLE_CELLS_H
+#pragma once
 
 #include "oracle/gaussians/oracle_uncertain.h"
 
@@ -47,5 +46,3 @@ typedef struct oracle_entry {
 conic_status conic_oracle_enter(conic_context *context, const conic_gaussians *gaussians, const conic_camera *camera,
                                 const conic_gaussian_options *options, const conic_float_model *model, int samples,
                                 oracle_entry *e);
-
-#endif

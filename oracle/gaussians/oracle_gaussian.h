@@ -1,6 +1,5 @@
 /* A Gaussian of a scene, set up for one view in double precision. */
-#ifndef CONIC_ORACLE_GAUSSIAN_H
-#define CONIC_ORACLE_GAUSSIAN_H
+#pragma once
 
 #include "conic/gaussian_oracle.h"
 
@@ -97,5 +96,3 @@ void conic_oracle_harmonic_values(int degree, const double direction[3], double 
 void conic_oracle_harmonic_slopes(int degree, const double direction[3], double (*slopes)[3]);
 /* The colour seen along a direction (of unit length): max(0, ½ + Σ sh·Y). `sh` has (degree + 1)² × 3 numbers. */
 void conic_oracle_harmonics(const double *sh, int degree, const double direction[3], double color[3]);
-
-#endif

@@ -1,7 +1,6 @@
 /* The steps of the derivative of a picture of Gaussians, in reverse: from a pixel's numbers to what Gaussians are on
  * the screen, and from there to their parameters and the camera's. */
-#ifndef CONIC_ORACLE_GRADIENT_H
-#define CONIC_ORACLE_GRADIENT_H
+#pragma once
 
 #include "conic/gaussian_gradient.h"
 #include "oracle/gaussians/oracle_gaussian.h"
@@ -88,5 +87,3 @@ typedef struct oracle_eye {
 void conic_oracle_gradient_chain(const oracle_gaussian_view *view, const oracle_eye *eye,
                                  const conic_gaussians *gaussians, size_t i, const conic_float_model *model,
                                  const double *sums, oracle_parameters *to, oracle_camera_gradient *camera);
-
-#endif

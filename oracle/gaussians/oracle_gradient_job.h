@@ -1,6 +1,5 @@
 /* One derivative on its way. */
-#ifndef CONIC_ORACLE_GRADIENT_JOB_H
-#define CONIC_ORACLE_GRADIENT_JOB_H
+#pragma once
 
 #include "oracle/gaussians/oracle_cells.h"
 #include "oracle/gaussians/oracle_gradient.h"
@@ -104,5 +103,3 @@ void conic_oracle_row_sizes(const oracle_gaussian_view *view, const oracle_gauss
 /* The chain of an ellipse with every term of one sign; `sums` are none below 0. */
 void conic_oracle_gradient_sizes(const oracle_gaussian_view *view, const conic_gaussians *gaussians, size_t i,
                                  const double *sums, oracle_parameters *to);
-
-#endif

@@ -1,6 +1,5 @@
 /* A Gaussian as floats may have it: what they are given at a pixel, and what may come of it there. */
-#ifndef CONIC_ORACLE_UNCERTAIN_H
-#define CONIC_ORACLE_UNCERTAIN_H
+#pragma once
 
 #include "conic/gaussian_judge.h"
 #include "oracle/gaussians/oracle_bounded.h"
@@ -73,5 +72,3 @@ typedef struct oracle_step {
  * is in doubt. `steps` has room for as many. */
 void conic_oracle_composite(const oracle_doubting *d, oracle_meeting *meetings, size_t n, const float background[3],
                             oracle_step *steps, conic_gaussian_bound *bound);
-
-#endif

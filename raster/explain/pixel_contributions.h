@@ -1,6 +1,5 @@
 /* The inside of a frame's contributions. */
-#ifndef CONIC_PIXEL_CONTRIBUTIONS_H
-#define CONIC_PIXEL_CONTRIBUTIONS_H
+#pragma once
 
 #include "conic/contributions.h"
 #include "raster/frame/drawing.h"
@@ -74,5 +73,3 @@ static inline conic_reach conic_reach_of(const conic_contributions *contribution
   reach.y_end = reach.y_end < view->height ? reach.y_end : view->height;
   return reach;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* What draws in the place of a renderer's own loops: another device. The renderer checks and prepares, the backend does
  * all the rest. */
-#ifndef CONIC_BACKEND_H
-#define CONIC_BACKEND_H
+#pragma once
 
 #include "raster/tiles/finish.h"
 
@@ -21,5 +20,3 @@ struct conic_backend {
 void conic_renderer_take(conic_renderer *renderer, conic_backend *backend);
 /* Null: none. */
 conic_backend *conic_renderer_backend(const conic_renderer *renderer);
-
-#endif

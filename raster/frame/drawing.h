@@ -1,6 +1,5 @@
 /* One picture of what a drawing holds, without samples. */
-#ifndef CONIC_DRAWING_H
-#define CONIC_DRAWING_H
+#pragma once
 
 #include "core/splats/columns.h"
 #include "raster/triangles/triangle_frame.h"
@@ -47,5 +46,3 @@ void conic_chunk_add(const conic_chunk *chunk, conic_chunk *sum);
 /* Sets what became of the splats of all chunks. */
 void conic_chunks_count(const conic_chunk *chunks, size_t n_chunks, conic_method method,
                         conic_render_statistics *statistics);
-
-#endif

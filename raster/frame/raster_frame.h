@@ -1,7 +1,6 @@
 /* A frame on its way through the stages: what is drawn is set up and sorted into tiles once, and then any of these are
  * drawn. */
-#ifndef CONIC_RASTER_FRAME_H
-#define CONIC_RASTER_FRAME_H
+#pragma once
 
 #include "raster/frame/backend.h"
 #include "raster/frame/drawing.h"
@@ -79,5 +78,3 @@ void conic_chunk_keep_window(const conic_window *window, conic_projected *projec
 void conic_chunk_count_others(const conic_view *view, const conic_splats *splats, size_t begin, size_t end,
                               const unsigned char *is_counted, const conic_projected *projected,
                               const conic_chunk *chunk, conic_chunk *sum);
-
-#endif

@@ -1,6 +1,5 @@
 /* The samples of a picture, for who makes of them something else than their mean. */
-#ifndef CONIC_SAMPLES_H
-#define CONIC_SAMPLES_H
+#pragma once
 
 #include "raster/frame/drawing.h"
 
@@ -38,5 +37,3 @@ conic_status conic_samples_count_drawing(conic_context *context, const conic_dra
 /* The planes of a fine picture, which the renderer fills whole: unlike conic_image_allocate's they are not cleared, for
  * at this size that is a large part of a frame. Errors: MEMORY. */
 conic_status conic_samples_allocate(conic_context *context, int width, int height, unsigned planes, conic_image *fine);
-
-#endif

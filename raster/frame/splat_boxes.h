@@ -1,6 +1,5 @@
 /* Where in a picture splats are, before any of it is drawn: for who deals out its windows. */
-#ifndef CONIC_SPLAT_BOXES_H
-#define CONIC_SPLAT_BOXES_H
+#pragma once
 
 #include "raster/project/projected.h"
 
@@ -10,5 +9,3 @@
 conic_status conic_splats_find_boxes(conic_context *context, const conic_splats *splats, const conic_camera *camera,
                                      const conic_render_options *options, unsigned planes, conic_box *boxes,
                                      conic_render_statistics *statistics);
-
-#endif

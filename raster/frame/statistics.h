@@ -1,6 +1,5 @@
 /* Statistics of pictures that are drawn in parts. */
-#ifndef CONIC_STATISTICS_H
-#define CONIC_STATISTICS_H
+#pragma once
 
 #include "conic/render.h"
 
@@ -9,5 +8,3 @@ void conic_statistics_add_pixels(const conic_render_statistics *part, conic_rend
 
 /* Adds also what is counted by the splat and by the triangle. */
 void conic_statistics_add(const conic_render_statistics *part, conic_render_statistics *sum);
-
-#endif

@@ -1,6 +1,5 @@
 /* One tile: its list of splats, shared out to its rows of blocks, and these drawn one after the other. */
-#ifndef CONIC_TILE_H
-#define CONIC_TILE_H
+#pragma once
 
 #include "raster/loops/raster_loops.h"
 
@@ -53,5 +52,3 @@ void conic_tile_draw(conic_tile *tile, const conic_raster_loops *loops, const co
 /* Takes the entries that change no pixel of the tile out of its scratch and its n_references, where so many surfaces
  * may lie behind each other that it is worth while. `band` is the tile's, before its first row. */
 void conic_tile_leave_hidden_out(conic_tile *tile, const conic_raster_loops *loops, const conic_band *band);
-
-#endif

@@ -1,8 +1,7 @@
 /* Whether a splat covers pixels, with what weight, and how deep: raster/tiles/coverage.h and core/splats/kernel.h lane
  * by lane, with the same operations in the same order. C and OpenCL C share this text; records are in private memory.
  */
-#ifndef CONIC_COVERAGE_LANES_H
-#define CONIC_COVERAGE_LANES_H
+#pragma once
 
 #include "core/lanes/lanes.h"
 #include "raster/loops/laplace_body.h"
@@ -228,5 +227,3 @@ CONIC_INLINE lanes weigh(const conic_view *view, float amplitude, lanes q, lanes
     weight *= kernel_value(view, q, kind);
   return lanes_keep(visible, lanes_max(weight, lanes_of(CONIC_LEAST_WEIGHT)));
 }
-
-#endif

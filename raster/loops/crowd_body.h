@@ -1,8 +1,7 @@
 /* Rays where many splats meet a band: of most, the plane's inverse depth alone tells whether they cover its pixels, and
  * that they are hidden, so that they need not be evaluated. No bit of what is drawn or counted changes, and plain C
  * does without. Included by pass_body.h. */
-#ifndef CONIC_CROWD_BODY_H
-#define CONIC_CROWD_BODY_H
+#pragma once
 
 #include <float.h>
 #include <math.h>
@@ -89,5 +88,3 @@ CONIC_INLINE int covers_span(const conic_ray *ray, const crowd_span *s, const cr
          s->x_first >= ray->dx_low && s->x_last <= ray->dx_high && s->y_first >= ray->dy_low &&
          s->y_last <= ray->dy_high;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Passes 1 and 2 in lanes: visibility and accumulation, and what the single pass shares with them. */
-#ifndef CONIC_PASS_BODY_H
-#define CONIC_PASS_BODY_H
+#pragma once
 
 #include "raster/loops/crowd_body.h"
 
@@ -537,5 +536,3 @@ static void accumulate(conic_band *band) {
     break;
   }
 }
-
-#endif

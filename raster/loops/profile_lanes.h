@@ -1,6 +1,5 @@
 /* core/splats/profile.h lane by lane, with the same operations in the same order. C and OpenCL C share this text. */
-#ifndef CONIC_PROFILE_LANES_H
-#define CONIC_PROFILE_LANES_H
+#pragma once
 
 #include "core/lanes/lanes_table.h"
 #include "core/splats/profile.h"
@@ -88,5 +87,3 @@ CONIC_INLINE lanes profile_lanes(const conic_profile *profile, const profile_sli
   }
   return aim->peak * value;
 }
-
-#endif

@@ -4,8 +4,7 @@
  * Contract of every slot: it writes what is named there and nothing else. Records are finite; a lane that is not
  * covered may hold anything, and is dropped by a comparison, never by a multiplication with zero. Sums are in the order
  * of the band's list. */
-#ifndef CONIC_RASTER_LOOPS_H
-#define CONIC_RASTER_LOOPS_H
+#pragma once
 
 #include "core/lanes/instruction_sets.h"
 #include "raster/project/project_loops.h"
@@ -22,5 +21,3 @@ typedef struct conic_raster_loops {
 } conic_raster_loops;
 
 CONIC_DECLARE_LOOPS(conic_raster_loops);
-
-#endif

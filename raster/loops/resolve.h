@@ -1,6 +1,5 @@
 /* Pass 3: normalising, shading, and writing a band's pixels to the planes that the image has. */
-#ifndef CONIC_RESOLVE_H
-#define CONIC_RESOLVE_H
+#pragma once
 
 #include "raster/tiles/finish.h"
 
@@ -16,5 +15,3 @@ typedef struct conic_band_rows {
 
 /* The planes that name splats: count and id. */
 void conic_band_resolve_indices(const conic_band *band, conic_image *image);
-
-#endif

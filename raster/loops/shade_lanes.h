@@ -1,7 +1,6 @@
 /* conic_shade (raster/tiles/shade.c) lane by lane, with the same operations in the same order. C and OpenCL C share
  * this text. */
-#ifndef CONIC_SHADE_LANES_H
-#define CONIC_SHADE_LANES_H
+#pragma once
 
 #include "core/lanes/lanes.h"
 #include "raster/tiles/finish.h"
@@ -72,5 +71,3 @@ CONIC_INLINE void look_back(const float world_from_cam[3][3], lanes dx, lanes dy
     viewer[i] = ((m[0] * dx + m[1] * dy) + m[2]) * scale;
   }
 }
-
-#endif

@@ -1,8 +1,7 @@
 /* The parts of smooth splats in the profile's table, several at a time: beside what one of them has in scalar code,
  * that is a tenth of the work, and what is stored is in the cache when pixels read it number by number. Included by
  * pass_body.h. */
-#ifndef CONIC_SMOOTH_BODY_H
-#define CONIC_SMOOTH_BODY_H
+#pragma once
 
 #include "raster/loops/coverage_lanes.h"
 
@@ -116,5 +115,3 @@ static __attribute__((noinline)) void weigh_ellipses(conic_band *band, const sou
     }
   }
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* The projection of a disc that may reach behind the camera, clipped at the near plane. */
-#ifndef CONIC_CLIP_DISC_H
-#define CONIC_CLIP_DISC_H
+#pragma once
 
 #include "raster/project/projected.h"
 
@@ -21,5 +20,3 @@ int conic_clip_solve(double a, double b, double c, double solutions[2][2]);
  * Returns 0 where they keep nothing. */
 int conic_clip_box(const conic_view *view, const conic_disc *disc, const float lines[2][3], int n_lines, int is_or,
                    double low_px[2], double high_px[2]);
-
-#endif

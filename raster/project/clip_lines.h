@@ -2,8 +2,7 @@
  *
  * A footprint that has some is marked by the sign of s3, which q does not see: s3 > 0 is an ellipse without lines,
  * s3 < 0 one with lines, +0 a ray without and -0 a ray with them. Its lines are clips[its index]. */
-#ifndef CONIC_CLIP_LINES_H
-#define CONIC_CLIP_LINES_H
+#pragma once
 
 #include <math.h>
 
@@ -34,5 +33,3 @@ static inline int conic_clip_keeps(const conic_clip_record *clip, float dx, floa
  * on. */
 void conic_clip_chunk(const conic_view *view, const conic_splats *splats, size_t begin, conic_projected *projected,
                       const conic_chunk *chunk);
-
-#endif

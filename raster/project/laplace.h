@@ -1,8 +1,7 @@
 /* The ray formula at the place that a pixel mostly sees: Laplace's method for the integral of kernel and filter
  * (docs/reference/picture.md, Laplace). Rays of method `auto` whose perspective changes within a pixel's filter are
  * drawn so; s2, which rays have no other use for, is 1 for them. */
-#ifndef CONIC_LAPLACE_H
-#define CONIC_LAPLACE_H
+#pragma once
 
 #include <math.h>
 
@@ -109,5 +108,3 @@ static inline int conic_laplace_at(const conic_view *view, const conic_footprint
   result->plane_iz = here.iz;
   return 1;
 }
-
-#endif

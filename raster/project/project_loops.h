@@ -1,6 +1,5 @@
 /* The table of set-up (raster/loops/raster_loops.h). */
-#ifndef CONIC_PROJECT_LOOPS_H
-#define CONIC_PROJECT_LOOPS_H
+#pragma once
 
 #include "raster/project/projected.h"
 
@@ -10,5 +9,3 @@ typedef struct conic_project_loops {
   void (*project)(const conic_view *view, const conic_splats *splats, size_t begin, size_t end,
                   conic_projected *projected, conic_chunk *chunk);
 } conic_project_loops;
-
-#endif

@@ -1,6 +1,5 @@
 /* Projected splats: what one frame needs to know of each splat that it may draw. */
-#ifndef CONIC_PROJECTED_H
-#define CONIC_PROJECTED_H
+#pragma once
 
 #include <stdint.h>
 
@@ -153,5 +152,3 @@ conic_outcome conic_project_ray(const conic_view *view, const conic_disc *disc, 
  * is 0). */
 conic_outcome conic_project_near(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
                                  conic_box *box, conic_ray *ray);
-
-#endif

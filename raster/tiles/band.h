@@ -1,8 +1,7 @@
 /* One row of a tile's blocks of 4 × 4 pixels, the unit of the passes. What they hand to each other stays in the nearest
  * caches: visibility goes splat by splat and keeps its fragments, block by block; accumulation then takes a block's
  * fragments one after the other, with the sums in registers. */
-#ifndef CONIC_BAND_H
-#define CONIC_BAND_H
+#pragma once
 
 #include <string.h>
 
@@ -174,5 +173,3 @@ static inline void conic_nearest_begin(const conic_band *band) {
 static inline int conic_block_is_empty(const conic_band *band, int block) {
   return band->n_kept[block] == 0 && band->not_kept[block] == band->n;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* Which splats may touch which tile. A chunk's records are brought into the order of their tiles, so that what a tile
  * reads lies together; its entries stay in file order. */
-#ifndef CONIC_BINS_H
-#define CONIC_BINS_H
+#pragma once
 
 #include <stdatomic.h>
 
@@ -82,5 +81,3 @@ size_t conic_bins_measure(conic_bins *bins);
 void conic_bins_gather(const conic_bins *bins, size_t i_tile, conic_tile_entry *entries);
 
 #define CONIC_GATHER_SLACK 1
-
-#endif

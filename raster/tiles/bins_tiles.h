@@ -1,6 +1,5 @@
 /* Which tiles a box meets, and by which words: what counting and sorting ask alike. */
-#ifndef CONIC_BINS_TILES_H
-#define CONIC_BINS_TILES_H
+#pragma once
 
 #include "raster/tiles/bins.h"
 
@@ -43,5 +42,3 @@ static inline void conic_tiles_beyond(const conic_bins *bins, uint32_t home, uin
   tiles[1] = beyond & CONIC_BEYOND_Y ? below : none;
   tiles[2] = (beyond & CONIC_BEYOND_X) && (beyond & CONIC_BEYOND_Y) ? below + 1 : none;
 }
-
-#endif

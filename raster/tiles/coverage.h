@@ -1,7 +1,6 @@
 /* The one place that says whether a splat covers a pixel, with what weight, and how deep: shared by both passes and by
  * resolving, so that they agree in every bit. */
-#ifndef CONIC_COVERAGE_H
-#define CONIC_COVERAGE_H
+#pragma once
 
 #include "raster/project/clip_lines.h"
 #include "raster/project/laplace.h"
@@ -196,5 +195,3 @@ static inline int conic_fragment_at(const conic_view *view, const conic_projecte
     return conic_ray_fragment(view, footprint, &projected->rays[footprint->i_ray], dx, dy, fragment);
   return conic_variance_fragment(view, footprint, dx, dy, fragment);
 }
-
-#endif

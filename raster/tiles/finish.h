@@ -1,6 +1,5 @@
 /* How pixels are finished: their rays, their light, and the pass that normalises, shades and writes them. */
-#ifndef CONIC_FINISH_H
-#define CONIC_FINISH_H
+#pragma once
 
 #include "raster/tiles/band.h"
 
@@ -50,5 +49,3 @@ typedef struct conic_finished_pixel {
 void conic_finish_covered(const conic_finish *finish, float weight, const float color_sum[3], const float normal_sum[3],
                           const float heaviest_normal[3], float dx, float dy, conic_finished_pixel *pixel);
 void conic_finish_uncovered(const conic_finish *finish, conic_finished_pixel *pixel);
-
-#endif

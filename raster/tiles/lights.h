@@ -1,6 +1,5 @@
 /* A frame's lights, from what its options say. */
-#ifndef CONIC_LIGHTS_H
-#define CONIC_LIGHTS_H
+#pragma once
 
 #include "raster/tiles/finish.h"
 
@@ -14,5 +13,3 @@ conic_status conic_finish_init(conic_context *context, const conic_camera *camer
 
 /* Lights that move with the camera become lights in the world, as it sees them. */
 void conic_lighting_place(const conic_camera *camera, conic_lighting *lighting);
-
-#endif

@@ -1,6 +1,5 @@
 /* The tables of what is done with tiles: sorting, passes, resolving, textures (raster/loops/raster_loops.h). */
-#ifndef CONIC_TILE_LOOPS_H
-#define CONIC_TILE_LOOPS_H
+#pragma once
 
 #include "conic/texture.h"
 #include "raster/tiles/bins.h"
@@ -52,5 +51,3 @@ typedef struct conic_texture_loops {
   void (*at_places)(const conic_texture *texture, const conic_texture_places *places, uint32_t pixels,
                     float color[3][CONIC_BLOCK_PIXELS]);
 } conic_texture_loops;
-
-#endif

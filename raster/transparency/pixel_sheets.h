@@ -1,7 +1,6 @@
 /* The surfaces behind one pixel, from front to back. A sheet is what the picture's rule of visibility blends into one
  * surface, once all before it is taken away. */
-#ifndef CONIC_PIXEL_SHEETS_H
-#define CONIC_PIXEL_SHEETS_H
+#pragma once
 
 #include "conic/transparency.h"
 #include "raster/explain/pixel_contributions.h"
@@ -78,5 +77,3 @@ typedef struct conic_sheet_picture {
 
 /* Reports progress as "transparency". Errors: MEMORY, CANCELLED. */
 conic_status conic_sheet_lines_draw(const conic_sheet_picture *picture);
-
-#endif

@@ -1,6 +1,5 @@
 /* conic_render_transparent's picture of one sample a pixel, window by window. */
-#ifndef CONIC_TRANSPARENT_WINDOWS_H
-#define CONIC_TRANSPARENT_WINDOWS_H
+#pragma once
 
 #include "conic/transparency.h"
 #include "raster/view/part.h"
@@ -19,5 +18,3 @@ conic_status conic_transparent_windows_draw(conic_transparent_windows *windows, 
 
 /* Null is allowed. */
 void conic_transparent_windows_end(conic_transparent_windows *windows);
-
-#endif

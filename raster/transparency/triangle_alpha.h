@@ -1,6 +1,5 @@
 /* How far triangles let light through. */
-#ifndef CONIC_TRIANGLE_ALPHA_H
-#define CONIC_TRIANGLE_ALPHA_H
+#pragma once
 
 #include "raster/triangles/triangle_pixel.h"
 
@@ -49,5 +48,3 @@ static inline float conic_triangle_lay_alpha(const conic_triangles *triangles, u
     return alpha >= material->alpha_cutoff ? 1.0f : 0.0f;
   return alpha;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* The samples that a triangle covers (raster/triangles/triangle_samples.h) a part of a block at a time, with the same
  * operations in the same order. C and OpenCL C share this text. */
-#ifndef CONIC_DRAW_LANES_H
-#define CONIC_DRAW_LANES_H
+#pragma once
 
 #include "core/lanes/lanes.h"
 #include "raster/triangles/triangle_samples.h"
@@ -98,5 +97,3 @@ CONIC_OUTLINE unsigned draw_blocks(const conic_triangle_record *record, uint32_t
   }
   return n_covered;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* What a triangle looks like (raster/triangles/triangle_pixel.h) lane by lane, with the same operations in the same
  * order. C and OpenCL C share this text. */
-#ifndef CONIC_LOOK_LANES_H
-#define CONIC_LOOK_LANES_H
+#pragma once
 
 #include "core/lanes/lanes.h"
 #include "raster/triangles/triangle_look.h"
@@ -85,5 +84,3 @@ CONIC_INLINE void find_texture_places(const conic_triangle_look *look, const loo
   *along = p->by_x[0] * look->uv[1][i] + p->by_x[1] * look->uv[2][i];
   *across = p->by_y[0] * look->uv[1][i] + p->by_y[1] * look->uv[2][i];
 }
-
-#endif

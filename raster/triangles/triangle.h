@@ -2,8 +2,7 @@
  * all that must agree in every bit (docs/reference/picture.md, Triangles).
  *
  * Vertices are snapped to 1/256 pixel; from there on coverage is exact, in integers. */
-#ifndef CONIC_TRIANGLE_H
-#define CONIC_TRIANGLE_H
+#pragma once
 
 #include <math.h>
 #include <stdint.h>
@@ -171,5 +170,3 @@ static inline int conic_triangle_sample(const conic_triangle_record *record, con
 static inline float conic_triangle_hides(float epsilon, float iz, float dx, float dy) {
   return iz * (1.0f / (1.0f + epsilon * iz / sqrtf((dx * dx + dy * dy) + 1.0f)));
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* What a triangle looks like within a block of pixels: its attributes, ready to be evaluated a pixel at a time. */
-#ifndef CONIC_TRIANGLE_LOOK_H
-#define CONIC_TRIANGLE_LOOK_H
+#pragma once
 
 #include "raster/triangles/triangle_frame.h"
 
@@ -21,5 +20,3 @@ typedef struct conic_triangle_look {
 /* Of the record in the block whose first pixel is (x, y). */
 void conic_triangle_look_at(const conic_triangle_frame *frame, const conic_triangle_record *record, int x, int y,
                             conic_triangle_look *look);
-
-#endif

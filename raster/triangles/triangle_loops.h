@@ -1,6 +1,5 @@
 /* The table of triangles (raster/loops/raster_loops.h). */
-#ifndef CONIC_TRIANGLE_LOOPS_H
-#define CONIC_TRIANGLE_LOOPS_H
+#pragma once
 
 #include "raster/tiles/finish.h"
 #include "raster/triangles/triangle_frame.h"
@@ -16,5 +15,3 @@ typedef struct conic_triangle_loops {
   /* After pass 2: adds those that are seen to the sums; heaviest, nearest. */
   void (*add)(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays);
 } conic_triangle_loops;
-
-#endif

@@ -1,7 +1,6 @@
 /* What a triangle looks like at one pixel. Shared by plain C and by a device's programs (opencl/triangles.cl);
  * triangle_body.h does the same in lanes. */
-#ifndef CONIC_TRIANGLE_PIXEL_H
-#define CONIC_TRIANGLE_PIXEL_H
+#pragma once
 
 #include <math.h>
 
@@ -118,5 +117,3 @@ static inline void conic_triangle_lay_texture(conic_triangle_sight *sight) {
     sight->color[channel] *= texel[channel];
   sight->texture = NULL;
 }
-
-#endif

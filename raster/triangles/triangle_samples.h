@@ -1,7 +1,6 @@
 /* The samples of a tile that a triangle covers, one by one. Shared by plain C and by a device's programs
  * (opencl/triangles.cl). */
-#ifndef CONIC_TRIANGLE_SAMPLES_H
-#define CONIC_TRIANGLE_SAMPLES_H
+#pragma once
 
 #include "raster/triangles/triangle.h"
 
@@ -55,5 +54,3 @@ static inline unsigned conic_triangle_draw_samples(const conic_triangle_record *
     }
   return n_covered;
 }
-
-#endif

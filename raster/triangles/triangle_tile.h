@@ -1,6 +1,5 @@
 /* A tile's triangles: which is the nearest at each pixel, and what that does to the splats' passes. */
-#ifndef CONIC_TRIANGLE_TILE_H
-#define CONIC_TRIANGLE_TILE_H
+#pragma once
 
 #include "raster/tiles/finish.h"
 #include "raster/triangles/triangle_pixel.h"
@@ -31,5 +30,3 @@ void conic_triangles_draw(const conic_triangle_frame *frame, size_t i_tile, int 
 void conic_triangles_hide(conic_band *band, const conic_tile_rays *rays);
 void conic_triangles_win(conic_band *band);
 void conic_triangles_add(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays);
-
-#endif

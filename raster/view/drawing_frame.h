@@ -1,6 +1,5 @@
 /* conic_drawing_frame of a drawing whose parts the processes of a team have. */
-#ifndef CONIC_DRAWING_FRAME_H
-#define CONIC_DRAWING_FRAME_H
+#pragma once
 
 #include "conic/triangles.h"
 #include "core/splats/shares.h"
@@ -10,5 +9,3 @@
 conic_status conic_drawing_frame_shared(conic_context *context, const conic_splats_shares *shares,
                                         const conic_drawing *drawing, float cutoff, const conic_framing *given,
                                         int n_turns, conic_camera *camera, double *near_z);
-
-#endif

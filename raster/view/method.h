@@ -1,6 +1,5 @@
 /* What the methods have in common, apart from how each draws. */
-#ifndef CONIC_METHOD_H
-#define CONIC_METHOD_H
+#pragma once
 
 #include "conic/render.h"
 
@@ -36,5 +35,3 @@ static inline int conic_method_has_exact_outline(conic_method method) {
 
 /* Fills splats_by_method from the counts of what was drawn, and of what a fallback drew. */
 void conic_method_count(conic_method method, uint64_t n_rays, conic_render_statistics *statistics);
-
-#endif

@@ -1,7 +1,6 @@
 /* Parts of a frame: windows of its pixels, or only how deep it hides. All are of the whole picture's own arithmetic,
  * bit for bit. */
-#ifndef CONIC_PART_H
-#define CONIC_PART_H
+#pragma once
 
 #include "conic/triangles.h"
 
@@ -66,5 +65,3 @@ void conic_prepared_release(conic_prepared *prepared);
  * in a picture that these splats are part of, nor hides, nor is the nearest. Errors: as conic_render_part. */
 conic_status conic_render_hiding(conic_renderer *renderer, const conic_splats *splats, const conic_camera *camera,
                                  const conic_render_options *options, float *hiding);
-
-#endif

@@ -1,6 +1,5 @@
 /* Mistakes that a renderer of splats may make, on purpose: for whoever wants to know whether another one made them. */
-#ifndef CONIC_SLIPS_H
-#define CONIC_SLIPS_H
+#pragma once
 
 #include "conic/render.h"
 
@@ -11,5 +10,3 @@ typedef enum conic_slip {
 
 /* Lets the renderer make them, as bits, until it is told otherwise. */
 void conic_renderer_slip(conic_renderer *renderer, unsigned slips);
-
-#endif

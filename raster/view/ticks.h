@@ -1,6 +1,5 @@
 /* A clock that costs next to nothing, for shares of time only: its unit is the machine's. */
-#ifndef CONIC_TICKS_H
-#define CONIC_TICKS_H
+#pragma once
 
 #include <stdint.h>
 
@@ -29,7 +28,5 @@ static inline uint64_t conic_ticks(void) {
   clock_gettime(CLOCK_MONOTONIC, &now);
   return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
 }
-
-#endif
 
 #endif

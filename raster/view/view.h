@@ -1,6 +1,5 @@
 /* What one frame asks for, brought into the form that the stages compute with. */
-#ifndef CONIC_VIEW_H
-#define CONIC_VIEW_H
+#pragma once
 
 #include "conic/camera.h"
 #include "conic/context.h"
@@ -42,5 +41,3 @@ typedef struct conic_view {
  * the near distance in use. Errors: ARGUMENT. */
 conic_status conic_view_init(conic_context *context, const conic_splats *splats, const conic_camera *camera,
                              const conic_render_options *options, double near_z, double splat_length, conic_view *view);
-
-#endif

@@ -2,8 +2,7 @@
  *
  * Every sum has eight partial sums: neighbour i is added to number i mod 8, and these are added as ((0 + 4) + (2 + 6))
  * + ((1 + 5) + (3 + 7)). So vectors of any width give the plain loop's bits. */
-#ifndef CONIC_SURFACE_LOOPS_H
-#define CONIC_SURFACE_LOOPS_H
+#pragma once
 
 #include "conic/surface.h"
 #include "core/base/base.h"
@@ -65,5 +64,3 @@ CONIC_DECLARE_LOOPS(conic_surface_loops);
 static inline int conic_n_coefficients(int degree) {
   return (degree + 1) * (degree + 2) / 2;
 }
-
-#endif

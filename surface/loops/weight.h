@@ -1,6 +1,5 @@
 /* θ, a sample's weight, and its derivatives: plain code that the vector bodies repeat operation by operation. */
-#ifndef CONIC_WEIGHT_H
-#define CONIC_WEIGHT_H
+#pragma once
 
 #include "surface/loops/surface_loops.h"
 
@@ -84,5 +83,3 @@ static inline conic_theta conic_weight_at(const conic_weighing *weighing, double
   theta.second = s < weighing->end ? theta.second : 0.0;
   return theta;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* A polynomial patch, and the grids on which it is sampled. */
-#ifndef CONIC_PATCH_H
-#define CONIC_PATCH_H
+#pragma once
 
 #include "surface/mls_surface.h"
 
@@ -61,5 +60,3 @@ typedef struct conic_grid_samples {
 /* Samples a part row by row. Returns how many there are. */
 size_t conic_grid_sample(const conic_patch *patch, int degree, double cutoff, const conic_grid_part *part,
                          const conic_grid_samples *to);
-
-#endif

@@ -1,6 +1,5 @@
 /* Patches through the vertices of a mesh, with its normals. */
-#ifndef CONIC_PATCH_MESH_H
-#define CONIC_PATCH_MESH_H
+#pragma once
 
 #include "conic/triangles.h"
 #include "surface/patches/patch.h"
@@ -49,5 +48,3 @@ int conic_patch_mesh_fit(const conic_patch_mesh *mesh, size_t vertex, size_t beg
 
 /* The steepest slope of the polynomial in eight places on an ellipse, all in units of h. */
 double conic_fit_steepest(const conic_fit *fit, int degree, double radius_x, double radius_y);
-
-#endif

@@ -1,6 +1,5 @@
 /* A set's patches, and the samples that a picture takes from them. */
-#ifndef CONIC_PATCH_SET_H
-#define CONIC_PATCH_SET_H
+#pragma once
 
 #include "conic/patches.h"
 #include "core/image/viewpoint.h"
@@ -101,5 +100,3 @@ double conic_patch_rows(const conic_patches_view *view, const conic_patch *patch
  * null. Returns how many samples there are. */
 size_t conic_patch_sample_deep(const conic_patches_view *view, const conic_patch *patch, int degree, double cutoff,
                                const conic_grid_samples *to);
-
-#endif

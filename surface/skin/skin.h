@@ -1,6 +1,5 @@
 /* A skin: triangles that splats make with their neighbours, wherever they lie as a surface does. */
-#ifndef CONIC_SKIN_H
-#define CONIC_SKIN_H
+#pragma once
 
 #include "conic/splats.h"
 
@@ -20,5 +19,3 @@ typedef struct conic_skin {
  * it is empty. Errors: ARGUMENT (over 2³² - 2 splats), MEMORY, CANCELLED. */
 conic_status conic_skin_find(conic_context *context, const conic_splats *splats, double cutoff, conic_skin *skin);
 void conic_skin_release(conic_context *context, conic_skin *skin);
-
-#endif

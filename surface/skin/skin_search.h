@@ -1,6 +1,5 @@
 /* Data that the steps to a skin share. */
-#ifndef CONIC_SKIN_SEARCH_H
-#define CONIC_SKIN_SEARCH_H
+#pragma once
 
 #include "core/estimate/neighbours.h"
 #include "surface/skin/skin.h"
@@ -56,5 +55,3 @@ conic_status conic_skin_choose(conic_skin_search *search);
 
 /* Finds the normals, colours and lifts of the splats that have slots. */
 void conic_skin_look(const conic_skin_search *search, conic_skin *skin);
-
-#endif

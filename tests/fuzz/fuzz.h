@@ -1,6 +1,5 @@
 /* What the fuzz targets share: the input as a file that exists in memory only, and a context that says nothing. */
-#ifndef CONIC_FUZZ_H
-#define CONIC_FUZZ_H
+#pragma once
 
 /* For memfd_create. */
 #ifndef _GNU_SOURCE
@@ -119,5 +118,3 @@ static inline int fuzz_model(const uint8_t *bytes, size_t n_bytes, conic_model_k
     fuzz_field(bytes, n_bytes, field, n_points);
   return is_mine || status != CONIC_OK ? 0 : -1; /* -1: not kept in the corpus */
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* The pictures' targets: PFM is ours, EXR and PNG the libraries' with our layout around them. What is neither would
  * only fuzz other people's decoders and is left out. */
-#ifndef CONIC_FUZZ_IMAGE_H
-#define CONIC_FUZZ_IMAGE_H
+#pragma once
 
 #include "tests/fuzz/fuzz.h"
 
@@ -39,5 +38,3 @@ static inline int fuzz_image(const uint8_t *bytes, size_t n_bytes, const char *m
   fuzz_close(&input, status, 1);
   return 0;
 }
-
-#endif

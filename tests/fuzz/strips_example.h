@@ -1,6 +1,5 @@
 /* A small picture in strips: what its fuzz target reads and its seed is of. */
-#ifndef CONIC_STRIPS_EXAMPLE_H
-#define CONIC_STRIPS_EXAMPLE_H
+#pragma once
 
 #include "shots/strips_file.h"
 
@@ -9,5 +8,3 @@ enum { STRIPS_EXAMPLE_HEAD = 128, STRIPS_EXAMPLE_PART = 600 };
 
 static const conic_strips_size strips_example = {
     .height = 200, .step = 16, .band_rows = 80, .row_bytes = 4, .most_bytes = 4096, .is_hashed = 1};
-
-#endif

@@ -1,6 +1,5 @@
 /* OpenGL without a display, for the tests' own renderer: on a machine without a GPU it is Mesa's llvmpipe. */
-#ifndef CONIC_GL_DEVICE_H
-#define CONIC_GL_DEVICE_H
+#pragma once
 
 #define GL_GLEXT_PROTOTYPES
 #include <GL/gl.h>
@@ -23,5 +22,3 @@ void gl_targets(int width, int height, GLuint framebuffer_and_planes[3]);
 
 /* Zeroed; ends the process where there is not enough. */
 void *gl_allocate(size_t n, size_t size);
-
-#endif

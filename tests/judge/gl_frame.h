@@ -1,8 +1,7 @@
 /* Pictures of Gaussian scenes as GPU viewers make them: set up in a compute shader, sorted by the CPU, composited tile
  * by tile in a fragment shader, or by blending quads; all in float, on whatever OpenGL there is. Nothing is shared with
  * conic. */
-#ifndef CONIC_GL_FRAME_H
-#define CONIC_GL_FRAME_H
+#pragma once
 
 #include "tests/judge/plain_scene.h"
 
@@ -15,5 +14,3 @@ typedef struct gl_order {
 /* Over black, on what gl_open opened. `picture` has the camera's size; its count is left alone. Ends the process, with
  * a message, where it cannot. */
 void gl_draw(const gl_order *order, const plain_scene *scene, const plain_camera *camera, plain_picture *picture);
-
-#endif

@@ -1,6 +1,5 @@
 /* Between conic and the plain renderers, which know nothing of it: cameras and pictures. */
-#ifndef CONIC_PLAIN_CONIC_H
-#define CONIC_PLAIN_CONIC_H
+#pragma once
 
 #include <string.h>
 
@@ -36,5 +35,3 @@ static inline conic_image image_of_plain(conic_context *context, const plain_pic
     memcpy(image.planes[CONIC_PLANE_TRANSPARENCY], p->T, n * sizeof(float));
   return image;
 }
-
-#endif

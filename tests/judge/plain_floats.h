@@ -2,8 +2,7 @@
  * rounded by itself; one that says a + b + c is summed in another order by the next compiler, or by another author.
  * Here either is chosen: never, always, or by chance, operation by operation. Build this without contraction, so that
  * nothing else is fused. */
-#ifndef CONIC_PLAIN_FLOATS_H
-#define CONIC_PLAIN_FLOATS_H
+#pragma once
 
 #include <math.h>
 #include <stdint.h>
@@ -123,5 +122,3 @@ static inline plain_floats plain_floats_by_chance(uint64_t seed, int is_fast) {
   f.exp = (plain_exp)plain_chance(&f, is_fast ? PLAIN_N_EXPS : PLAIN_EXP_BY_EXP2);
   return f;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* How a plain renderer sets up a Gaussian for its pixels. */
-#ifndef CONIC_PLAIN_FOOTPRINT_H
-#define CONIC_PLAIN_FOOTPRINT_H
+#pragma once
 
 #include "tests/judge/plain_gaussians.h"
 
@@ -42,5 +41,3 @@ int plain_place(plain_frame *v, size_t i, plain_footprint *g);
 static inline float plain_clamp(float value, float low, float high) {
   return fminf(fmaxf(value, low), high);
 }
-
-#endif

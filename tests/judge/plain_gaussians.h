@@ -1,7 +1,6 @@
 /* A plain renderer of Gaussians, as the author of a CUDA or WebGPU program would write it from the papers: project,
  * sort, composite front to back, all in float. It shares no code with the library. */
-#ifndef CONIC_PLAIN_GAUSSIANS_H
-#define CONIC_PLAIN_GAUSSIANS_H
+#pragma once
 
 #include "tests/judge/plain_floats.h"
 #include "tests/judge/plain_scene.h"
@@ -47,5 +46,3 @@ typedef struct plain_settings {
 
 void plain_gaussians_draw(const plain_scene *scene, const plain_camera *camera, const plain_settings *settings,
                           plain_picture *picture);
-
-#endif

@@ -1,7 +1,6 @@
 /* A scene of 3D or 2D Gaussian splatting, a camera and a picture, as a plain renderer has them. Nothing here shares
  * code with the library. */
-#ifndef CONIC_PLAIN_SCENE_H
-#define CONIC_PLAIN_SCENE_H
+#pragma once
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -101,5 +100,3 @@ void plain_picture_release(plain_picture *picture);
 void plain_picture_spoil(plain_picture *picture, unsigned faults);
 /* By the ending: OUT.pfm and OUT.T.pfm, OUT.Z.pfm; or OUT.npy (H, W, 4) and OUT.Z.npy. */
 void plain_picture_write(const plain_picture *picture, const char *path);
-
-#endif

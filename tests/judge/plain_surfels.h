@@ -2,8 +2,7 @@
  * a tolerance in depth, and blended weights, all in float. By docs/reference/picture.md, but for what reaches near or
  * is seen at a slant so close that its depth changes by a quarter: those are not drawn here. No code is the library's.
  */
-#ifndef CONIC_PLAIN_SURFELS_H
-#define CONIC_PLAIN_SURFELS_H
+#pragma once
 
 #include "tests/judge/plain_floats.h"
 #include "tests/judge/plain_scene.h"
@@ -30,5 +29,3 @@ void plain_surfels_release(plain_surfels *surfels);
 /* Returns how many surfels are not drawn for what they would need. */
 size_t plain_surfels_draw(const plain_surfels *surfels, const plain_camera *camera,
                           const plain_surfel_settings *settings, plain_picture *picture);
-
-#endif

@@ -1,6 +1,5 @@
 /* Neighbours on a bent sheet, for the sums over them; some lie beyond the reach. */
-#ifndef CONIC_BENT_SHEET_H
-#define CONIC_BENT_SHEET_H
+#pragma once
 
 #include "surface/loops/weight.h"
 #include "tests/support/random_numbers.h"
@@ -27,5 +26,3 @@ static inline void bent_sheet_fill(conic_near *near, size_t n, uint64_t seed) {
 static inline conic_weighing bent_sheet_weighing(conic_surface_weight weight, double neglect) {
   return (conic_weighing){weight, neglect * neglect, conic_weight_exp(neglect * neglect)};
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Files of one camera, in every format that is read: what tests compare, and what fuzzing starts from. */
-#ifndef CONIC_CAMERA_FILES_H
-#define CONIC_CAMERA_FILES_H
+#pragma once
 
 #include "core/base/byte_order.h"
 #include "core/cameras/camera_list.h"
@@ -195,5 +194,3 @@ static inline void camera_check_read(conic_context *context, conic_cameras *came
   }
   conic_cameras_release(context, cameras);
 }
-
-#endif

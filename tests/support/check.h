@@ -1,7 +1,6 @@
 /* The few macros that the tests share: a test is a program that checks, reports every failure, and returns
  * check_result(). */
-#ifndef CONIC_CHECK_H
-#define CONIC_CHECK_H
+#pragma once
 
 #include <math.h>
 #include <stdio.h>
@@ -69,5 +68,3 @@ static inline const char *check_data(const char *source_folder, const char *name
   fclose(file);
   return path;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* A scanned place: a wavy ground of splats, leaves above it that face anywhere, and dots. */
-#ifndef CONIC_CLOUD_FIXTURE_H
-#define CONIC_CLOUD_FIXTURE_H
+#pragma once
 
 #include "conic/splats.h"
 #include "core/base/random.h"
@@ -47,5 +46,3 @@ static inline void cloud_fixture(conic_context *context, size_t n_leaves, size_t
   }
   cloud->count = n;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* What the tests of deep images share: reading one back, and holding it against the picture. */
-#ifndef CONIC_DEEP_FILE_H
-#define CONIC_DEEP_FILE_H
+#pragma once
 
 #include "core/base/byte_order.h"
 #include "tests/support/fixture.h"
@@ -181,5 +180,3 @@ static inline int deep_check(const fixture *f, const conic_drawing *drawing, con
   free(bytes[1]);
   return 1;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* An E57 file of two scans that is put together in memory: pages, packets, and bits across their ends. */
-#ifndef CONIC_E57_EXAMPLE_H
-#define CONIC_E57_EXAMPLE_H
+#pragma once
 
 #include "core/base/real.h"
 #include "core/scans/e57_file.h"
@@ -157,5 +156,3 @@ static inline void e57_make(e57_test_file *file) {
   file->n_bytes += (size_t)n;
   e57_put_pages(file, xml, (size_t)n);
 }
-
-#endif

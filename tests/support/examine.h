@@ -1,6 +1,5 @@
 /* A picture held against the oracle's. */
-#ifndef CONIC_EXAMINE_H
-#define CONIC_EXAMINE_H
+#pragma once
 
 #include "tests/support/fixture.h"
 
@@ -16,5 +15,3 @@ static inline outcome examine(fixture *f) {
   CHECK_OK(conic_oracle_compare(f->context, &o.reference, &f->image, &o.verdict));
   return o;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Hand-made files for the readers' tests: a temporary folder, and a context that keeps its last message. */
-#ifndef CONIC_FILES_H
-#define CONIC_FILES_H
+#pragma once
 
 #include <stdarg.h>
 #include <sys/stat.h>
@@ -89,5 +88,3 @@ static inline size_t files_read(const char *path, unsigned char **bytes) {
   fclose(file);
   return n;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* What the tests that draw share: a context, a renderer, splats filled by hand, a camera, an image. */
-#ifndef CONIC_FIXTURE_H
-#define CONIC_FIXTURE_H
+#pragma once
 
 #include "tests/support/check.h"
 
@@ -103,5 +102,3 @@ static inline double fixture_random(uint64_t *state) {
   z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
   return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* A new folder for what a test writes. */
-#ifndef CONIC_FOLDER_H
-#define CONIC_FOLDER_H
+#pragma once
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,5 +19,3 @@ static inline void folder_make(char folder[FOLDER_ROOM]) {
   perror(folder);
   exit(1);
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Gaussian scenes for tests. */
-#ifndef CONIC_GAUSSIAN_FIXTURE_H
-#define CONIC_GAUSSIAN_FIXTURE_H
+#pragma once
 
 #include "gaussians/scene/gaussian_set.h"
 #include "tests/support/files.h"
@@ -40,5 +39,3 @@ static inline int gaussians_have(conic_gaussian_kind kind) {
       return conic_feature_at(i)->available;
   return 1;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Pictures of Gaussians for tests, and how they compare with the oracle's. */
-#ifndef CONIC_GAUSSIAN_PICTURE_H
-#define CONIC_GAUSSIAN_PICTURE_H
+#pragma once
 
 #include "conic/gaussian_oracle.h"
 #include "conic/gaussian_render.h"
@@ -72,5 +71,3 @@ static inline conic_gaussian_reference picture_reference(conic_context *context,
     exit(1);
   return reference;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* A hierarchy of several files as one: the sizes of the first two parts, 4 bytes each, and then the parts: metadata, a
  * page of the hierarchy, and points, which are those of every node of an EPT. */
-#ifndef CONIC_HIERARCHY_PARTS_H
-#define CONIC_HIERARCHY_PARTS_H
+#pragma once
 
 #include <stdint.h>
 #include <string.h>
@@ -194,5 +193,3 @@ static inline size_t hierarchy_copc_example(unsigned char *to) {
   hierarchy_put(to + PAGE + 28, 4, 1);
   return PAGE + 32;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* A web server within a test, on the loopback: a good one, or one that misbehaves as the first part of the path says.
  * Its first answer is always good, unless said otherwise below, so that what comes later is what is tested. */
-#ifndef CONIC_HTTP_SERVER_H
-#define CONIC_HTTP_SERVER_H
+#pragma once
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -334,5 +333,3 @@ static inline void http_server_stop(http_server *server) {
   while (atomic_load(&server->n_busy) > 0)
     http_pause(1);
 }
-
-#endif

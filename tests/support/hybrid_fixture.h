@@ -1,6 +1,5 @@
 /* What the tests of hybrid models share: meshes, models of them, and pictures from all around. */
-#ifndef CONIC_HYBRID_FIXTURE_H
-#define CONIC_HYBRID_FIXTURE_H
+#pragma once
 
 #include "lod/hybrid/model/hybrid_model.h"
 #include "tests/support/check.h"
@@ -51,5 +50,3 @@ static inline void hybrid_look(conic_context *context, int direction, int size, 
   framing.elevation_deg = direction < 24 ? elevations[direction / 8] : direction == 24 ? -90.0 : 90.0;
   CHECK_OK(conic_camera_frame(context, &framing, low, high, camera));
 }
-
-#endif

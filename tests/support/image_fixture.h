@@ -1,6 +1,5 @@
 /* What the image tests share: a folder of their own, pictures with every kind of value, the features of the build. */
-#ifndef CONIC_IMAGE_FIXTURE_H
-#define CONIC_IMAGE_FIXTURE_H
+#pragma once
 
 #include <dirent.h>
 #include <stdint.h>
@@ -112,5 +111,3 @@ static inline int same_planes(const conic_image *a, const conic_image *b) {
   }
   return 1;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Scenes that lamps and suns light, for their tests. */
-#ifndef CONIC_LAMP_FIXTURE_H
-#define CONIC_LAMP_FIXTURE_H
+#pragma once
 
 #include "tests/support/light_fixture.h"
 
@@ -68,5 +67,3 @@ static inline conic_triangles lamp_floor(conic_context *context, double (*height
   light_field(&mesh, 8, 3.0, height);
   return mesh;
 }
-
-#endif

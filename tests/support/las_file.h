@@ -1,6 +1,5 @@
 /* LAS files made by hand, byte by byte. */
-#ifndef CONIC_LAS_FILE_H
-#define CONIC_LAS_FILE_H
+#pragma once
 
 #include <stdint.h>
 #include <stdlib.h>
@@ -103,5 +102,3 @@ static inline size_t las_describe_extra(las_file *file, size_t n) {
   memcpy(bytes + at + 192 + 4, "speed", 5);
   return at;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Layered point clouds for tests: built of a set of splats, and read back whole. */
-#ifndef CONIC_LAYERS_FIXTURE_H
-#define CONIC_LAYERS_FIXTURE_H
+#pragma once
 
 #include "core/base/memory.h"
 #include "lod/layers/format/layers_decode.h"
@@ -97,5 +96,3 @@ static inline int layers_are_missing(void) {
       return !conic_feature_at(i)->available;
   return 1;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* Layered point clouds for tests that draw: shells within shells, so that much is hidden, some of it but for splats
  * seen from their edge. */
-#ifndef CONIC_LAYERS_FRAME_H
-#define CONIC_LAYERS_FRAME_H
+#pragma once
 
 #include "tests/support/fixture.h"
 
@@ -100,5 +99,3 @@ static inline int layers_same_picture(const conic_image *a, const conic_image *b
       return 0;
   return 1;
 }
-
-#endif

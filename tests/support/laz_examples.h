@@ -1,7 +1,6 @@
 /* Points of every format, packed by lazrs 0.8.2 (scripts/laz_peers --examples), and what they are unpacked. Those of
  * formats 2 and 7 lie in chunks of several sizes. */
-#ifndef CONIC_LAZ_EXAMPLES_H
-#define CONIC_LAZ_EXAMPLES_H
+#pragma once
 
 #include <stdio.h>
 
@@ -271,5 +270,3 @@ static inline las_file laz_example_file(const laz_example *example) {
   las_put(&file, file.points_offset, table + file.points_offset, 8);
   return file;
 }
-
-#endif

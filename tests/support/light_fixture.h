@@ -1,6 +1,5 @@
 /* What the tests of lighting share: meshes, a caster that draws them, and light worked out by rays. */
-#ifndef CONIC_LIGHT_FIXTURE_H
-#define CONIC_LIGHT_FIXTURE_H
+#pragma once
 
 #include "tests/support/fixture.h"
 #include "tests/support/ray_mesh.h"
@@ -220,5 +219,3 @@ static inline double light_occlusion_by_rays(const ray_mesh *mesh, const double 
     }
   return (double)n_free / (n * n);
 }
-
-#endif

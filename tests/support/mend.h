@@ -1,7 +1,6 @@
 /* Makes the sums in a file's bytes right, where all that its header tells of is there: tests and fuzzing would
  * otherwise see no further than the sums. */
-#ifndef CONIC_MEND_H
-#define CONIC_MEND_H
+#pragma once
 
 #include <string.h>
 
@@ -57,5 +56,3 @@ static inline void mend_hybrid(unsigned char *bytes, size_t n_bytes) {
   }
   conic_file_mend_header(&conic_chy_kind, is_whole ? &h : NULL, bytes);
 }
-
-#endif

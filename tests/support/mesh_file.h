@@ -1,6 +1,5 @@
 /* One small mesh as a file of every kind that is read through Assimp, made by hand: four corners, four faces. */
-#ifndef CONIC_MESH_FILE_H
-#define CONIC_MESH_FILE_H
+#pragma once
 
 #include <stdarg.h>
 #include <stdint.h>
@@ -353,5 +352,3 @@ static const mesh_kind mesh_kinds[] = {
     {"x3d", mesh_x3d, 0, 1, {0, 1, 0}},   {"dxf", mesh_dxf, 1, 1, {0, 1, 0}},      {"amf", mesh_amf, 0, 1, {0, 0, 1}},
 };
 enum { MESH_N_KINDS = sizeof mesh_kinds / sizeof *mesh_kinds };
-
-#endif

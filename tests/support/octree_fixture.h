@@ -1,6 +1,5 @@
 /* What the octree's tests share: sets of splats, octrees of them. */
-#ifndef CONIC_OCTREE_FIXTURE_H
-#define CONIC_OCTREE_FIXTURE_H
+#pragma once
 
 #include "lod/octree/octree_nodes.h"
 #include "tests/support/fixture.h"
@@ -84,5 +83,3 @@ static inline void octree_draw(fixture *f, const conic_octree *octree, const con
   CHECK_OK(conic_render(f->renderer, &selection->splats, &f->camera, &options, &f->image, &f->statistics));
   conic_selection_name(selection, &f->image);
 }
-
-#endif

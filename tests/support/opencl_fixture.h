@@ -1,6 +1,5 @@
 /* What the OpenCL tests share: a device or a skip, splats of all kinds with clip lines, and pictures compared. */
-#ifndef CONIC_OPENCL_FIXTURE_H
-#define CONIC_OPENCL_FIXTURE_H
+#pragma once
 
 #include "bench/loops/cross_desk.h"
 
@@ -56,5 +55,3 @@ static inline int opencl_same(const conic_image *a, const conic_image *b, const 
   }
   return 1;
 }
-
-#endif

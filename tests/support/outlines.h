@@ -1,6 +1,5 @@
 /* Sets of points for the estimate's tests, and what the outlines that it finds cover. */
-#ifndef CONIC_OUTLINES_H
-#define CONIC_OUTLINES_H
+#pragma once
 
 #include "tests/support/check.h"
 #include "tests/support/random_numbers.h"
@@ -86,5 +85,3 @@ static inline int outlines_count(const conic_splats *splats, size_t begin, size_
   }
   return n;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* PLY files put together by hand, in one of the three encodings, and read. */
-#ifndef CONIC_PLY_FILE_H
-#define CONIC_PLY_FILE_H
+#pragma once
 
 #include <stdint.h>
 
@@ -143,5 +142,3 @@ static inline void ply_put_mixture(encoding kind, int has_vertex_list) {
   ply_add('i', -5);
   ply_end_row();
 }
-
-#endif

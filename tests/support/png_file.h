@@ -1,6 +1,5 @@
 /* PNG files made by hand, of every kind that there is: without compression, by the format's own layout. */
-#ifndef CONIC_PNG_FILE_H
-#define CONIC_PNG_FILE_H
+#pragma once
 
 #include <stdint.h>
 #include <stdlib.h>
@@ -141,5 +140,3 @@ static inline void png_make(png_file *file, const png_kind *kind) {
   png_data(file, kind);
   png_chunk(file, "IEND", NULL, 0);
 }
-
-#endif

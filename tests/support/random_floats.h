@@ -1,7 +1,6 @@
 /* A renderer of a single pixel of Gaussians whose floats round, fuse and order at random: every operation is off by up
  * to the unit roundoff, in a direction that chance or malice chooses. It shares no code with the library. */
-#ifndef CONIC_RANDOM_FLOATS_H
-#define CONIC_RANDOM_FLOATS_H
+#pragma once
 
 #include "conic/gaussian_judge.h"
 #include "tests/support/random_numbers.h"
@@ -301,5 +300,3 @@ static inline random_pixel random_draw(random_floats *f, const conic_gaussians *
   random_composite(f, hits, n, all, is_khr ? 0.0 : (double)1e-4f, !is_ray, &pixel);
   return pixel;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Random numbers for tests: the same on every machine. */
-#ifndef CONIC_RANDOM_NUMBERS_H
-#define CONIC_RANDOM_NUMBERS_H
+#pragma once
 
 #include <stdint.h>
 
@@ -11,5 +10,3 @@ static inline double random_unit(uint64_t *state) {
   x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
   return (double)((x ^ (x >> 31)) >> 11) / 9007199254740992.0;
 }
-
-#endif

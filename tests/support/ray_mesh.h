@@ -1,6 +1,5 @@
 /* Rays against triangles, one by one down a tree of boxes: what shadows are measured against. */
-#ifndef CONIC_RAY_MESH_H
-#define CONIC_RAY_MESH_H
+#pragma once
 
 #include "tests/support/check.h"
 
@@ -139,5 +138,3 @@ static inline int ray_is_blocked(const ray_mesh *mesh, const double from[3], con
   }
   return 0;
 }
-
-#endif

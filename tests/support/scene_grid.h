@@ -1,6 +1,5 @@
 /* Points sorted into the cells of a grid, for tests that ask what lies near a place. */
-#ifndef CONIC_SCENE_GRID_H
-#define CONIC_SCENE_GRID_H
+#pragma once
 
 #include <stdint.h>
 
@@ -80,5 +79,3 @@ static inline size_t scene_grid_look(const scene_grid *grid, const double place[
   *nearest = sqrt(least);
   return n;
 }
-
-#endif

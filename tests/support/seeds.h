@@ -1,6 +1,5 @@
 /* A small sound file of every kind that is read: what the tests of bad input spoil, and what fuzzing starts from. */
-#ifndef CONIC_SEEDS_H
-#define CONIC_SEEDS_H
+#pragma once
 
 #include "core/assimp/assimp_bridge.h"
 #include "tests/support/camera_files.h"
@@ -537,5 +536,3 @@ static inline void seeds_release(seed_set *set) {
     free(set->seeds[i].bytes);
   free(set);
 }
-
-#endif

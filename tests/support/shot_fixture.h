@@ -1,6 +1,5 @@
 /* What the tests of shots share: small scenes in files, their sources, and a shot that sees them. */
-#ifndef CONIC_SHOT_FIXTURE_H
-#define CONIC_SHOT_FIXTURE_H
+#pragma once
 
 #include "conic/shot.h"
 #include "tests/support/files.h"
@@ -104,5 +103,3 @@ static inline conic_shot shot_of(conic_source *source, conic_camera_kind kind, i
   CHECK_OK(conic_shot_frame(source, &framing, &shot));
   return shot;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Pictures of a cube, or of one that lacks an octant, against the solid itself: no holes, and nothing sticks out. */
-#ifndef CONIC_SOLID_H
-#define CONIC_SOLID_H
+#pragma once
 
 #include "tests/support/fixture.h"
 
@@ -92,5 +91,3 @@ static inline void solid_check(fixture *f, int lacks_octant, double hole_px, dou
     }
   }
 }
-
-#endif

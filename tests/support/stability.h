@@ -1,8 +1,7 @@
 /* What the stability tests share: sheets of discs, cameras anywhere, the comparison with the oracle over every method,
  * and the comparison of two pictures of one thing. Every case prints its figures, which docs/reference/accuracy.md
  * quotes. */
-#ifndef CONIC_STABILITY_H
-#define CONIC_STABILITY_H
+#pragma once
 
 #include "tests/support/fixture.h"
 
@@ -189,5 +188,3 @@ static inline void stability_print(const char *name, const fixture *f, const sta
   printf("%-44s %-7s colour %.1e (p99.9 %.1e)  Z %.1e (%.1e)  coverage %zu of %zu\n", name,
          conic_method_name(f->options.method), d->color, d->color_p999, d->depth, d->depth_p999, d->coverage, d->both);
 }
-
-#endif

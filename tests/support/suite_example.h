@@ -1,6 +1,5 @@
 /* The smallest manifest of a suite. */
-#ifndef CONIC_SUITE_EXAMPLE_H
-#define CONIC_SUITE_EXAMPLE_H
+#pragma once
 
 #define SUITE_EXAMPLE_SUM "00112233445566778899aabbccddeeff00112233445566778899aabbccddeeff"
 #define SUITE_EXAMPLE                                                                                                  \
@@ -9,5 +8,3 @@
   "{\"conic\": \"c/a.json\"}, \"width\": 36, \"height\": 20}],\n\"cases\": [{\"name\": \"L1-a-p\", \"level\": 1, "     \
   "\"scene\": \"a\", \"profile\": \"p\", \"npy\": \"e/a.npy\"}],\n\"files\": [{\"path\": \"e/a.npy\", \"bytes\": 5, "  \
   "\"sha256\": \"" SUITE_EXAMPLE_SUM "\"}]}\n"
-
-#endif

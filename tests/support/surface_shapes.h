@@ -1,6 +1,5 @@
 /* Samples of shapes whose surface is known, with their exact normals. */
-#ifndef CONIC_SURFACE_SHAPES_H
-#define CONIC_SURFACE_SHAPES_H
+#pragma once
 
 #include "tests/support/check.h"
 #include "tests/support/random_numbers.h"
@@ -149,5 +148,3 @@ static inline size_t shape_project(conic_surface *surface, const conic_splats *s
   free(positions);
   return n;
 }
-
-#endif

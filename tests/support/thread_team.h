@@ -1,6 +1,5 @@
 /* A team whose processes are threads of a test. */
-#ifndef CONIC_THREAD_TEAM_H
-#define CONIC_THREAD_TEAM_H
+#pragma once
 
 #include <pthread.h>
 
@@ -107,5 +106,3 @@ static inline void thread_team_run(int count, void (*run)(const conic_team *team
   pthread_cond_destroy(&all.changed);
   pthread_mutex_destroy(&all.lock);
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* What the tests of triangles share: sets filled by hand, and pictures of them beside splats. */
-#ifndef CONIC_TRIANGLE_FIXTURE_H
-#define CONIC_TRIANGLE_FIXTURE_H
+#pragma once
 
 #include "tests/support/fixture.h"
 
@@ -107,5 +106,3 @@ static inline void triangles_torus_of_splats(fixture *f, size_t count) {
   fixture_scene(f, CONIC_SCENE_TORUS, count);
   f->splats.origin[2] = 1.5;
 }
-
-#endif

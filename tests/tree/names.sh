@@ -67,6 +67,10 @@ put core/a.h '#ifndef CONIC_B_H' '#define CONIC_B_H' '#endif'
 expect breach
 put core/a.h 'int a;'
 expect breach
+put include/conic/a.h '#pragma once' 'int a;'
+expect breach
+put core/a.h '#pragma once' 'int a;'
+expect peace
 for i in {1..46}; do
   put "core/base/a$i.c" ''
 done

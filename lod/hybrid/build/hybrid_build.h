@@ -1,6 +1,5 @@
 /* Building hybrid models: what its steps hand to each other. */
-#ifndef CONIC_HYBRID_BUILD_H
-#define CONIC_HYBRID_BUILD_H
+#pragma once
 
 #include "lod/clusters/cluster_sample.h"
 #include "lod/clusters/cluster_simplify.h"
@@ -94,5 +93,3 @@ void conic_nodes_release(conic_ways_job *job);
 /* Makes the model of all that was found. The caller owns what there is of *hybrid, on failure too. Errors: ARGUMENT
  * (too much for a file), MEMORY. */
 conic_status conic_hybrid_pack(const conic_ways_job *ways, conic_hybrid **hybrid);
-
-#endif

@@ -1,7 +1,6 @@
 /* Chooses what each cluster in sight is drawn as, triangles or surfels and at which level, and which nodes stand for
  * many of them: the fewest primitives for an error on the screen, or the least error for so many. */
-#ifndef CONIC_HYBRID_CHOOSE_H
-#define CONIC_HYBRID_CHOOSE_H
+#pragma once
 
 #include "lod/hybrid/draw/hybrid_offers.h"
 
@@ -33,5 +32,3 @@ conic_status conic_hybrid_choose_levels(const conic_hybrid_choosing *choosing, u
 
 /* For each cluster of the model the node that stands for it, or NO_NODE. */
 void conic_hybrid_find_standing(const conic_hybrid *hybrid, const uint32_t *nodes, uint32_t *standing);
-
-#endif

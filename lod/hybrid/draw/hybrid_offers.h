@@ -1,6 +1,5 @@
 /* What each level of each cluster offers to a picture: its error there, and what drawing it takes. */
-#ifndef CONIC_HYBRID_OFFERS_H
-#define CONIC_HYBRID_OFFERS_H
+#pragma once
 
 #include "core/image/viewpoint.h"
 #include "lod/hybrid/model/hybrid_model.h"
@@ -56,5 +55,3 @@ double conic_hybrid_point_error_px(const conic_hybrid_camera *view, const conic_
 /* Its splat: position, t_u, t_v and colour. `cutoff` is where it ends. */
 void conic_hybrid_point_splat(const conic_hybrid_camera *view, const conic_hybrid_node *node, double cutoff,
                               float values[12]);
-
-#endif

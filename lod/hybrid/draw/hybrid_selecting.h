@@ -1,6 +1,5 @@
 /* What choosing the levels of a hybrid model, and copying what they are drawn of, hand to each other. */
-#ifndef CONIC_HYBRID_SELECTING_H
-#define CONIC_HYBRID_SELECTING_H
+#pragma once
 
 #include "core/base/kept_memory.h"
 #include "lod/hybrid/draw/hybrid_choose.h"
@@ -94,5 +93,3 @@ size_t conic_hybrid_count_stitches(const conic_hybrid *hybrid, uint32_t cluster,
  * corners, clusters and materials are there already. Positions, normals, colours and texture coordinates of the new
  * vertices are filled in. The cluster's frame and ends must be there. */
 void conic_hybrid_stitch(conic_hybrid_stitching *stitching);
-
-#endif

@@ -1,8 +1,7 @@
 /* The chunks of a hybrid model, which are read one by one. A level's chunk has what is drawn of it. A cluster's two
  * chunks, frame and ends, have what fits it to others. Levels have the first numbers, then come all frames, then all
  * ends. Each chunk begins with its sum (docs/reference/format-chy.md). */
-#ifndef CONIC_HYBRID_CHUNKS_H
-#define CONIC_HYBRID_CHUNKS_H
+#pragma once
 
 #include "lod/clusters/cluster.h"
 #include "lod/hybrid/model/hybrid_model.h"
@@ -83,5 +82,3 @@ const char *conic_hybrid_take_chunk(const conic_hybrid *hybrid, uint32_t chunk, 
 
 /* What is wrong between a cluster's chunks. All of them must be there. */
 const char *conic_hybrid_cluster_fault(const conic_hybrid *hybrid, uint32_t cluster);
-
-#endif

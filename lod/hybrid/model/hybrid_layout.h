@@ -1,6 +1,5 @@
 /* Where everything but the chunks is in a .chy file. In the memory of a hybrid model it lies in the same way. */
-#ifndef CONIC_HYBRID_LAYOUT_H
-#define CONIC_HYBRID_LAYOUT_H
+#pragma once
 
 #include "core/files/file_body.h"
 #include "lod/hybrid/model/hybrid_model.h"
@@ -40,5 +39,3 @@ extern const conic_file_kind conic_chy_kind;
 
 /* Makes the materials and their textures of what is attached. Errors: MEMORY. */
 conic_status conic_chy_make_materials(conic_hybrid *hybrid);
-
-#endif

@@ -1,6 +1,5 @@
 /* A hybrid model as it is in memory. */
-#ifndef CONIC_HYBRID_MODEL_H
-#define CONIC_HYBRID_MODEL_H
+#pragma once
 
 #include "conic/hybrid.h"
 #include "core/base/vectors.h"
@@ -127,5 +126,3 @@ void conic_hybrid_fill_nodes(const conic_hybrid_bound *bounds, const float *reac
 
 /* A sphere and a cone that hold both; a cone of more than half of all directions becomes all of them, -1. */
 conic_hybrid_bound conic_hybrid_join(const conic_hybrid_bound *a, const conic_hybrid_bound *b);
-
-#endif

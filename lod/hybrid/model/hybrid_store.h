@@ -1,6 +1,5 @@
 /* The chunks in memory of a hybrid model that is read by ranges. What was not used for longest goes first. */
-#ifndef CONIC_HYBRID_STORE_H
-#define CONIC_HYBRID_STORE_H
+#pragma once
 
 #include "core/files/pile.h"
 #include "lod/hybrid/model/hybrid_model.h"
@@ -64,5 +63,3 @@ typedef struct conic_hybrid_traffic {
 } conic_hybrid_traffic;
 
 conic_hybrid_traffic conic_hybrid_store_traffic(const conic_hybrid *hybrid);
-
-#endif

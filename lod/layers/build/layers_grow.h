@@ -1,7 +1,6 @@
 /* From buckets to the whole tree, and from the tree to a file. Groups of chunks grow by themselves, on all threads,
  * chunk by chunk of what fits into memory; then the groups are merged, and a team's parts. */
-#ifndef CONIC_LAYERS_GROW_H
-#define CONIC_LAYERS_GROW_H
+#pragma once
 
 #include "lod/layers/build/layers_parts.h"
 
@@ -48,5 +47,3 @@ void conic_layers_merge_counts(const conic_team *team, conic_layers_worker *work
  * write to one file under its temporary name, so all have to see the same disk. Errors: MEMORY, IO, CANCELLED. */
 conic_status conic_layers_write(conic_context *context, const char *path, const conic_team *team,
                                 const conic_layers_tree *tree, conic_layers_header *header);
-
-#endif

@@ -5,8 +5,7 @@
  *   branch KEY BITS SAMPLES     the place, and how many samples it holds
  *   axes INPUT                  what has been estimated of an input's points, which may take as long as growing
  */
-#ifndef CONIC_LAYERS_KEPT_H
-#define CONIC_LAYERS_KEPT_H
+#pragma once
 
 #include "core/files/finished.h"
 #include "lod/layers/build/layers_team.h"
@@ -66,5 +65,3 @@ FILE *conic_layers_kept_open_input(const conic_layers_kept *kept, uint64_t numbe
 /* The bytes of one, which the caller releases. Errors: MEMORY, IO. */
 conic_status conic_layers_kept_read(const conic_layers_kept *kept, const conic_layers_kept_branch *branch,
                                     unsigned char **bytes, size_t *n_bytes);
-
-#endif

@@ -1,7 +1,6 @@
 /* Nodes of a layered cloud while its tree grows, bottom up: every node takes from its two children the samples that
  * stand for all of its place, and what is left of a child's samples is the child's cloud (docs/reference/layers.md). */
-#ifndef CONIC_LAYERS_NODE_H
-#define CONIC_LAYERS_NODE_H
+#pragma once
 
 #include "core/files/pile.h"
 #include "lod/layers/build/layers_kept.h"
@@ -247,5 +246,3 @@ conic_status conic_layers_branch_pack(const conic_layers_plan *plan, const conic
 conic_status conic_layers_branch_unpack(conic_layers_worker *worker, const unsigned char *bytes, size_t n_bytes,
                                         const conic_layers_kept_branch *place, conic_layers_packed *packed,
                                         conic_layers_node **node);
-
-#endif

@@ -1,7 +1,6 @@
 /* Samples on their way to where the tree grows. With a team, each process grows parts of the tree, and gets their
  * samples from the others; the same parts are found in every process. Then samples are sorted roughly into buckets. */
-#ifndef CONIC_LAYERS_PARTS_H
-#define CONIC_LAYERS_PARTS_H
+#pragma once
 
 #include "lod/layers/build/layers_raws.h"
 
@@ -101,5 +100,3 @@ conic_status conic_layers_buckets_add(conic_layers_buckets *buckets, const conic
  * for all of them; *sorted is the one that has them. Several threads may do so. Errors: MEMORY, IO. */
 conic_status conic_layers_buckets_load(const conic_layers_buckets *buckets, size_t first, size_t end,
                                        unsigned char *samples, unsigned char *scratch, unsigned char **sorted);
-
-#endif

@@ -1,7 +1,6 @@
 /* The samples that a layered cloud is built from, raw as they come: put aside until their box and spacing are known,
  * and then placed on the grid of the file. */
-#ifndef CONIC_LAYERS_RAWS_H
-#define CONIC_LAYERS_RAWS_H
+#pragma once
 
 #include "core/coloring/value_limits.h"
 #include "core/files/spool.h"
@@ -158,5 +157,3 @@ uint64_t conic_layers_grid_key(const conic_layers_grid *grid, const double posit
 /* A feed's `run`, from a conic_layers_grid: samples on the grid, one by one in the order in which they came. Errors:
  * MEMORY, IO, CANCELLED, the receiver's. */
 conic_status conic_layers_grid_run(const void *grid, conic_layers_take *take, void *to);
-
-#endif

@@ -1,7 +1,6 @@
 /* Building one layered cloud by a team of processes, which all see the same disk. Each takes in a part of the samples,
  * and grows a part of the tree. The file is the same as one process makes of all samples, the first process's first. */
-#ifndef CONIC_LAYERS_TEAM_H
-#define CONIC_LAYERS_TEAM_H
+#pragma once
 
 #include <stdio.h>
 
@@ -41,5 +40,3 @@ FILE *conic_layers_builder_open_kept(const conic_layers_builder *builder, uint64
 /* Says whether all samples have colours: whether the team's first batch has. `batch` is the first one of this process.
  * It waits for the processes before. Errors: MEMORY, CANCELLED. */
 conic_status conic_layers_builder_agree(conic_layers_builder *builder, const conic_splats *batch, int *has_colors);
-
-#endif

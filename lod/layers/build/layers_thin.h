@@ -1,7 +1,6 @@
 /* From many points the few that stand for them: no two nearer than a distance, and none of the many farther from
  * one of them than that (a Poisson-disc set that has room for no more). */
-#ifndef CONIC_LAYERS_THIN_H
-#define CONIC_LAYERS_THIN_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -53,5 +52,3 @@ typedef struct conic_layers_chosen {
  * places around it. The greatest of several sets is the same in whichever order they come. */
 double conic_layers_disc_error(const conic_layers_chosen *chosen, const conic_layers_disc *discs, size_t n,
                                double beyond, double error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Which places of a layered point cloud a picture shows, and how fine: the cut through its tree. */
-#ifndef CONIC_LAYERS_CUT_H
-#define CONIC_LAYERS_CUT_H
+#pragma once
 
 #include "lod/layers/draw/layers_scene.h"
 #include "lod/layers/draw/layers_view.h"
@@ -69,5 +68,3 @@ size_t conic_layers_mark_needed(const conic_layers *layers, const conic_layers_p
  * for all others. Returns how many there are. */
 size_t conic_layers_needed(const conic_layers *layers, const conic_layers_cut *cut, conic_place_state last,
                            unsigned char *needed);
-
-#endif

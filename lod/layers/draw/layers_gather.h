@@ -1,6 +1,5 @@
 /* From places to splats: what the clouds have there is gathered into a set, in the order of the file. */
-#ifndef CONIC_LAYERS_GATHER_H
-#define CONIC_LAYERS_GATHER_H
+#pragma once
 
 #include "lod/layers/draw/layers_cut.h"
 
@@ -102,5 +101,3 @@ double conic_layers_depth_complexity(const conic_layers *layers, const conic_lay
 conic_status conic_layers_hide(conic_layers *layers, conic_renderer *renderer, const conic_layers_view *view,
                                const conic_camera *camera, const conic_render_options *render, double until_s,
                                conic_layers_cut *cut, conic_layers_set *set);
-
-#endif

@@ -1,8 +1,7 @@
 /* How deep a picture hides, at several resolutions, so that the least of any rectangle of pixels is found by a few
  * looks.
  */
-#ifndef CONIC_LAYERS_HORIZON_H
-#define CONIC_LAYERS_HORIZON_H
+#pragma once
 
 #include "raster/view/part.h"
 
@@ -27,5 +26,3 @@ void conic_horizon_update(conic_context *context, conic_horizon *horizon);
 
 /* No more than the least of the window's pixels, which are in the picture. */
 float conic_horizon_least(const conic_horizon *horizon, const conic_window *window);
-
-#endif

@@ -4,8 +4,7 @@
  * A node with children gets eight: octants without a node become entries without samples, in which what lies above is
  * drawn. Entries of all known nodes are numbered by level, then by key. As more of the hierarchy is read, they are
  * numbered anew, and the cache with them. What an entry states depends on the nodes above it alone. */
-#ifndef CONIC_LAYERS_OCTREE_H
-#define CONIC_LAYERS_OCTREE_H
+#pragma once
 
 #include "lod/layers/draw/layers_cut.h"
 
@@ -94,5 +93,3 @@ conic_status conic_layers_octree_index(conic_layers *layers);
 /* Reads the pages of these entries. The nodes that they tell of replace the entries. Errors: as expansion. */
 conic_status conic_layers_octree_read_pages(conic_layers *layers, const uint32_t *entries, size_t n,
                                             conic_layers_expansion *expansion);
-
-#endif

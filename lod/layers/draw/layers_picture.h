@@ -1,7 +1,6 @@
 /* One picture of a layered point cloud, drawn at once or window by window, with the same bits. What is drawn is chosen
  * for all of the picture, and a window reads what it may show of that. */
-#ifndef CONIC_LAYERS_PICTURE_H
-#define CONIC_LAYERS_PICTURE_H
+#pragma once
 
 #include "conic/layers_draw.h"
 #include "raster/view/part.h"
@@ -37,5 +36,3 @@ void conic_layers_picture_weigh(const conic_layers_picture *picture, const conic
 /* Tells what the picture took, by these sums. */
 void conic_layers_picture_tell(conic_layers_picture *picture, const conic_render_statistics *statistics,
                                const conic_layers_tally *tally, conic_layers_drawn *drawn);
-
-#endif

@@ -1,6 +1,5 @@
 /* A layered point cloud that is open for drawing. */
-#ifndef CONIC_LAYERS_SCENE_H
-#define CONIC_LAYERS_SCENE_H
+#pragma once
 
 #include "core/splats/raw_colors.h"
 #include "lod/hierarchies/hierarchy.h"
@@ -64,5 +63,3 @@ static inline uint64_t conic_layers_cache_bytes(const conic_layers *layers) {
 static inline uint64_t conic_layers_drawing_bytes(const conic_layers *layers) {
   return conic_layers_free_bytes(layers) / 8 * 5;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* The splats of a picture, gathered once, put aside by the windows that they may meet, and drawn window by window. */
-#ifndef CONIC_LAYERS_SPILL_H
-#define CONIC_LAYERS_SPILL_H
+#pragma once
 
 #include "core/files/pile.h"
 #include "lod/layers/draw/layers_gather.h"
@@ -137,5 +136,3 @@ typedef struct conic_layers_band_drawing {
  * whole picture, whatever the bands; or, for a window, its share of them. Errors: as conic_layers_draw. */
 conic_status conic_layers_draw_bands(const conic_layers_band_drawing *drawing, conic_render_statistics *statistics,
                                      int *n_bands);
-
-#endif

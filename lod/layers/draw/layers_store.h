@@ -1,6 +1,5 @@
 /* The decoded clouds of a file that are in memory: those last used, up to a bound. */
-#ifndef CONIC_LAYERS_STORE_H
-#define CONIC_LAYERS_STORE_H
+#pragma once
 
 #include "conic/layers_draw.h"
 #include "lod/layers/format/layers_decode.h"
@@ -59,5 +58,3 @@ conic_status conic_layers_store_ask_ahead(conic_layers *layers, const uint32_t *
 
 /* How many of the first clouds of a list may be in memory together, within so many bytes; at least 1. */
 size_t conic_layers_store_fit(const conic_layers *layers, const uint32_t *clouds, size_t n, uint64_t n_bytes);
-
-#endif

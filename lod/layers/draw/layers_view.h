@@ -1,6 +1,5 @@
 /* How the places of a layered point cloud look in one picture: bounds that hold for all that is drawn of them. */
-#ifndef CONIC_LAYERS_VIEW_H
-#define CONIC_LAYERS_VIEW_H
+#pragma once
 
 #include "core/image/viewpoint.h"
 #include "lod/layers/format/layers_decode.h"
@@ -85,5 +84,3 @@ void conic_layers_find_turned(const conic_layers_facings *facings, const conic_l
 static inline int conic_layers_is_turned(const conic_layers_turned *turned, uint16_t facing) {
   return (int)(turned->bits[facing >> 5] >> (facing & 31) & 1);
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Directions and ellipses as few bits, and back. Only + - x / and roots: the same bits everywhere. */
-#ifndef CONIC_LAYERS_AXES_H
-#define CONIC_LAYERS_AXES_H
+#pragma once
 
 #include "conic/splats.h"
 #include "lod/layers/format/layers_schema.h"
@@ -30,5 +29,3 @@ float conic_layers_size_of(uint16_t code);
 /* Clip lines, in units of the axes, as codes and back; the record's index is the caller's. */
 void conic_layers_code_lines(const conic_clip *clip, conic_layers_lines *lines);
 int conic_layers_lines_of(const conic_layers_lines *lines, conic_clip *clip);
-
-#endif

@@ -1,6 +1,5 @@
 /* The streams of a cloud: what the builder packs and the decoder unpacks (docs/reference/format-lpc.md). */
-#ifndef CONIC_LAYERS_CODE_H
-#define CONIC_LAYERS_CODE_H
+#pragma once
 
 #include "core/files/zstd.h"
 #include "lod/layers/format/layers_format.h"
@@ -49,5 +48,3 @@ size_t conic_layers_encode(conic_layers_coder *coder, const unsigned char *sampl
 /* Unpacks n records. Returns null, or what is wrong. */
 const char *conic_layers_unpack(conic_layers_coder *coder, const unsigned char *bytes, size_t n_bytes, size_t n,
                                 uint64_t first_key, uint64_t last_key, unsigned char *samples);
-
-#endif

@@ -1,6 +1,5 @@
 /* From a cloud's bytes to its samples. */
-#ifndef CONIC_LAYERS_DECODE_H
-#define CONIC_LAYERS_DECODE_H
+#pragma once
 
 #include "conic/coloring.h"
 #include "core/splats/point_filter.h"
@@ -70,5 +69,3 @@ const char *conic_layers_decode(conic_layers_decoder *decoder, const conic_layer
 /* The samples of `cloud` in the place of the node `below`: from *first to before *end. */
 void conic_layers_range(const conic_layers_header *header, const conic_layers_cloud *cloud,
                         const conic_layers_entry *below, size_t *first, size_t *end);
-
-#endif

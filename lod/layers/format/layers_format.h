@@ -1,7 +1,6 @@
 /* .lpc files: header and index as they are in memory, and how they come from and go to bytes
  * (docs/reference/format-lpc.md). */
-#ifndef CONIC_LAYERS_FORMAT_H
-#define CONIC_LAYERS_FORMAT_H
+#pragma once
 
 #include "core/files/mapping.h"
 #include "lod/layers/format/layers_schema.h"
@@ -118,5 +117,3 @@ typedef struct conic_layers_file {
 /* Maps the file and checks header and index; `path` must outlive the file. Errors: INPUT, MEMORY. */
 conic_status conic_layers_file_open(conic_context *context, const char *path, conic_layers_file *file);
 void conic_layers_file_close(conic_layers_file *file);
-
-#endif

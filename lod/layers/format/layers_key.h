@@ -1,6 +1,5 @@
 /* Morton codes: the bits of x, y and z in turn, x's first. */
-#ifndef CONIC_LAYERS_KEY_H
-#define CONIC_LAYERS_KEY_H
+#pragma once
 
 #include "core/base/radix.h"
 
@@ -22,5 +21,3 @@ static inline uint64_t conic_layers_key(uint32_t x, uint32_t y, uint32_t z) {
 static inline uint32_t conic_layers_step(uint64_t key, int axis) {
   return conic_layers_gather_bits(key >> (2 - axis));
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* What a sample of a layered point cloud has: the table of attributes at the begin of a file, and where each attribute
  * lies in a record in memory (docs/reference/format-lpc.md). */
-#ifndef CONIC_LAYERS_SCHEMA_H
-#define CONIC_LAYERS_SCHEMA_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -134,5 +133,3 @@ static inline unsigned char *conic_layers_value_in(const conic_layers_schema *sc
                                                    uint32_t k) {
   return samples + i * schema->sample_bytes + schema->at[k];
 }
-
-#endif
