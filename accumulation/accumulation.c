@@ -86,12 +86,11 @@ typedef struct adding {
   int is_half;
 } adding;
 
-static void add_sample_row(void *data, size_t y, int i_thread) {
+static void add_sample_row(void *data, size_t y) {
   const adding *work = data;
   const conic_accumulation *a = work->sums;
   size_t width = (size_t)a->width, first = 0;
   conic_exact_sum *row = a->sums + y * width * a->n_channels;
-  (void)i_thread;
   for (int i = 0; i < CONIC_N_PLANES; i++) {
     if (!(a->planes >> i & 1))
       continue;
@@ -132,10 +131,9 @@ typedef struct merging {
   const conic_accumulation *other;
 } merging;
 
-static void merge_row(void *data, size_t y, int i_thread) {
+static void merge_row(void *data, size_t y) {
   const merging *work = data;
   size_t n = (size_t)work->sums->width * work->sums->n_channels;
-  (void)i_thread;
   for (size_t i = y * n; i < (y + 1) * n; i++)
     conic_exact_merge(&work->sums->sums[i], work->other->sums[i]);
 }
@@ -192,12 +190,11 @@ static void resolve_means(const conic_accumulation *a, conic_plane plane, const 
     to[c] = a->n_samples ? (float)(values[c] / scale) : 0.0f;
 }
 
-static void resolve_row(void *data, size_t y, int i_thread) {
+static void resolve_row(void *data, size_t y) {
   const resolving *work = data;
   const conic_accumulation *a = work->sums;
   size_t width = (size_t)a->width, first = 0;
   const conic_exact_sum *row = a->sums + y * width * a->n_channels;
-  (void)i_thread;
   for (int i = 0; i < CONIC_N_PLANES; i++) {
     size_t n = (size_t)conic_plane_describe((conic_plane)i)->n_channels;
     float *to = work->image->planes[i];

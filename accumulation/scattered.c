@@ -38,10 +38,9 @@ typedef struct part_joining {
   size_t n;
 } part_joining;
 
-static void join_run(void *data, size_t i_run, int i_thread) {
+static void join_run(void *data, size_t i_run) {
   const part_joining *work = data;
   size_t begin = i_run * RUN, end = work->n - begin < RUN ? work->n : begin + RUN;
-  (void)i_thread;
   for (size_t i = begin; i < end; i++)
     conic_exact_merge(&work->sums[i], work->others[i]);
 }

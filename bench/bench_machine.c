@@ -20,11 +20,10 @@ typedef struct load {
 
 typedef uint64_t words __attribute__((vector_size(64)));
 
-static void read_slice(void *data, size_t i, int i_thread) {
+static void read_slice(void *data, size_t i) {
   load *l = data;
   const unsigned char *from = l->from + i * l->slice_bytes;
   words sums[4] = {{0}};
-  (void)i_thread;
   for (size_t at = 0; at + sizeof sums <= l->slice_bytes; at += sizeof sums)
     for (size_t k = 0; k < 4; k++) {
       words next;
@@ -36,15 +35,13 @@ static void read_slice(void *data, size_t i, int i_thread) {
       l->sums[i] += sums[k][lane];
 }
 
-static void write_slice(void *data, size_t i, int i_thread) {
+static void write_slice(void *data, size_t i) {
   load *l = data;
-  (void)i_thread;
   memset(l->to + i * l->slice_bytes, (int)(i & 0xff), l->slice_bytes);
 }
 
-static void copy_slice(void *data, size_t i, int i_thread) {
+static void copy_slice(void *data, size_t i) {
   load *l = data;
-  (void)i_thread;
   memcpy(l->to + i * l->slice_bytes, l->from + i * l->slice_bytes, l->slice_bytes);
 }
 
@@ -90,16 +87,15 @@ static int lanes_of_machine(load *l) {
   return 4;
 }
 
-static void compute_slice(void *data, size_t i, int i_thread) {
+static void compute_slice(void *data, size_t i) {
   load *l = data;
-  (void)i_thread;
   l->compute(l->n_steps, 0.999f, 0.001f + (float)i, &l->results[i]);
 }
 
 /* --- measuring --- */
 
 /* The best of a few rounds, after one that is not counted: what the machine can, not what it mostly does. */
-static double least_seconds(cli_session *worker, conic_task *task, load *l) {
+static double least_seconds(cli_session *worker, conic_task task, load *l) {
   double least = 1e30;
   for (int i = 0; i <= N_ROUNDS; i++) {
     double start = cli_seconds();
@@ -123,11 +119,11 @@ conic_status cli_bench_machine_measure(cli_session *worker, cli_bench_machine *m
     double lanes = lanes_of_machine(l);
     memset(l->from, 1, buffer_bytes); /* pages that were never written are all the same one */
     machine->threads = conic_context_threads(worker->context);
-    machine->read_bytes_per_s = (double)buffer_bytes / least_seconds(worker, read_slice, l);
-    machine->write_bytes_per_s = (double)buffer_bytes / least_seconds(worker, write_slice, l);
-    machine->copy_bytes_per_s = (double)buffer_bytes / least_seconds(worker, copy_slice, l);
+    machine->read_bytes_per_s = (double)buffer_bytes / least_seconds(worker, CONIC_TASK(read_slice), l);
+    machine->write_bytes_per_s = (double)buffer_bytes / least_seconds(worker, CONIC_TASK(write_slice), l);
+    machine->copy_bytes_per_s = (double)buffer_bytes / least_seconds(worker, CONIC_TASK(copy_slice), l);
     machine->operations_per_s =
-        2.0 * N_CHAINS * N_SLICES * lanes * (double)l->n_steps / least_seconds(worker, compute_slice, l);
+        2.0 * N_CHAINS * N_SLICES * lanes * (double)l->n_steps / least_seconds(worker, CONIC_TASK(compute_slice), l);
   } else
     status = CONIC_ERROR_MEMORY;
   conic_memory_release(worker->context, l ? l->from : NULL);

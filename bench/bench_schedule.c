@@ -11,9 +11,8 @@ typedef struct region_starts {
   double *begun;
 } region_starts;
 
-static void rest_task(void *data, size_t i_item, int i_thread) {
+static void rest_task(void *data, size_t i_item) {
   (void)i_item;
-  (void)i_thread;
   region_starts *starts = data;
   starts->begun[atomic_fetch_add(&starts->n_begun, 1)] = conic_seconds_now();
   nanosleep(&(struct timespec){.tv_nsec = 5000000}, NULL);

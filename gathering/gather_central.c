@@ -128,12 +128,11 @@ static void widen_box(gather_box *box, const float at[2]) {
   }
 }
 
-static void look_up_row(void *data, size_t i_row, int i_thread) {
+static void look_up_row(void *data, size_t i_row) {
   const gather_band *b = data;
   gather_box *boxes = b->boxes + i_row * CONIC_CUBE_SIDES;
   double step = 1.0 / (double)b->samples;
   double y = ((double)(b->first_row * b->samples + i_row) + 0.5) * step;
-  (void)i_thread;
   for (int i = 0; i < CONIC_CUBE_SIDES; i++)
     boxes[i] = (gather_box){{HUGE_VALF, HUGE_VALF}, {-HUGE_VALF, -HUGE_VALF}};
   for (size_t x = 0; x < b->width; x++) {
@@ -177,10 +176,9 @@ static void gather_pixel(const gather_band *b, size_t from, size_t to, double fa
   }
 }
 
-static void gather_row(void *data, size_t i_row, int i_thread) {
+static void gather_row(void *data, size_t i_row) {
   const gather_band *b = data;
   size_t fine_row = b->fine == b->g->image ? b->first_row + i_row : i_row;
-  (void)i_thread;
   for (size_t x = 0; x < b->width; x++) {
     size_t i = i_row * b->width + x;
     if (b->side[i] != b->i_side)
@@ -192,10 +190,9 @@ static void gather_row(void *data, size_t i_row, int i_thread) {
 }
 
 /* Clears samples whose camera sees no direction. */
-static void empty_row(void *data, size_t i_row, int i_thread) {
+static void empty_row(void *data, size_t i_row) {
   const gather_band *b = data;
   size_t fine_row = b->fine == b->g->image ? b->first_row + i_row : i_row;
-  (void)i_thread;
   for (int i = 0; i < CONIC_N_PLANES; i++) {
     const conic_plane_description *plane = conic_plane_describe((conic_plane)i);
     size_t n = (size_t)plane->n_channels;

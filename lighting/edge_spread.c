@@ -47,9 +47,8 @@ static int is_at_edge(const conic_edge_spread *s, size_t x, size_t y) {
   return 0;
 }
 
-static void find_receivers_at_edges(void *data, size_t y, int i_thread) {
+static void find_receivers_at_edges(void *data, size_t y) {
   const conic_edge_spread *s = data;
-  (void)i_thread;
   for (size_t x = 0; x < (size_t)s->image->width; x++)
     if (s->kind[pixel_at(s, x, y)] == RECEIVER && is_at_edge(s, x, y))
       s->kind[pixel_at(s, x, y)] = RECEIVER_AT_EDGE;
@@ -64,9 +63,8 @@ static int has_receiver_about(const conic_edge_spread *s, size_t x, size_t y) {
   return 0;
 }
 
-static void find_alone(void *data, size_t y, int i_thread) {
+static void find_alone(void *data, size_t y) {
   const conic_edge_spread *s = data;
-  (void)i_thread;
   for (size_t x = 0; x < (size_t)s->image->width; x++)
     s->is_alone[pixel_at(s, x, y)] = s->kind[pixel_at(s, x, y)] == NO_RECEIVER && !has_receiver_about(s, x, y);
 }
@@ -115,9 +113,8 @@ static float spread_at(const conic_edge_spread *s, size_t x, size_t y) {
              : s->otherwise;
 }
 
-static void fill_row(void *data, size_t y, int i_thread) {
+static void fill_row(void *data, size_t y) {
   const conic_edge_spread *s = data;
-  (void)i_thread;
   for (size_t x = 0; x < (size_t)s->image->width; x++)
     s->filled[pixel_at(s, x, y)] = spread_at(s, x, y);
 }

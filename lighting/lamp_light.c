@@ -48,11 +48,10 @@ static void add_power(const lamp_lighting *work, size_t pixel, const double at[3
   l->lamp_power[pixel] += luminance * (float)whole;
 }
 
-static void light_row(void *data, size_t y, int i_thread) {
+static void light_row(void *data, size_t y) {
   const lamp_lighting *work = data;
   const conic_light_work *l = work->l;
   double at[3], towards[3];
-  (void)i_thread;
   for (size_t x = 0; x < (size_t)l->image->width; x++) {
     size_t pixel = conic_light_pixel(l, x, y);
     float z = work->depth[pixel];

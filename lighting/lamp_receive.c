@@ -140,10 +140,9 @@ static size_t end_of_item(const lamp_receiving *work, size_t i_item) {
   return end < count ? end : count;
 }
 
-static void find_sides(void *data, size_t i_item, int i_thread) {
+static void find_sides(void *data, size_t i_item) {
   const lamp_receiving *work = data;
   lamp_side *sides = work->of_items[i_item];
-  (void)i_thread;
   for (int i = 0; i < LAMP_SIDES; i++)
     lamp_side_init(&sides[i]);
   for (size_t i = i_item * TOGETHER; i < end_of_item(work, i_item); i++) {
@@ -156,14 +155,13 @@ static void find_sides(void *data, size_t i_item, int i_thread) {
   }
 }
 
-static void receive_side(void *data, size_t i_item, int i_thread) {
+static void receive_side(void *data, size_t i_item) {
   const lamp_receiving *work = data;
   const conic_receivers *from = work->room->receivers;
   float columns[6][TOGETHER], visible[TOGETHER], facing[TOGETHER];
   conic_receivers near_lamp = {.position = {columns[0], columns[1], columns[2]},
                                .normal = {columns[3], columns[4], columns[5]}};
   size_t places[TOGETHER], n = 0;
-  (void)i_thread;
   if (work->of_items[i_item][work->i_side].count == 0)
     return;
   for (size_t i = i_item * TOGETHER; i < end_of_item(work, i_item); i++) {

@@ -13,19 +13,17 @@ typedef struct receiving {
   const conic_light_map *map;
 } receiving;
 
-static void receive_light(void *data, size_t i_item, int i_thread) {
+static void receive_light(void *data, size_t i_item) {
   const receiving *r = data;
   float facing[CONIC_RECEIVED_TOGETHER];
   size_t begin = i_item * CONIC_RECEIVED_TOGETHER, end = begin + CONIC_RECEIVED_TOGETHER;
   end = end < r->l->receivers.count ? end : r->l->receivers.count;
-  (void)i_thread;
   r->l->room.loops.receive(r->map, &r->l->receivers, begin, end, 1, r->l->visible + begin, facing);
 }
 
-static void hide_row(void *data, size_t y, int i_thread) {
+static void hide_row(void *data, size_t y) {
   const conic_light_work *l = data;
   float shaded[3];
-  (void)i_thread;
   for (size_t x = 0; x < (size_t)l->image->width; x++) {
     size_t pixel = conic_light_pixel(l, x, y);
     float part = 1.0f - l->spread.filled[pixel];
@@ -46,10 +44,9 @@ static void hide_lights(conic_light_work *l, const conic_finish_lights *lights) 
 /* Takes the hidden part of what all lights make of a pixel. It multiplies by a part, and does not subtract a
  * difference: where normals cancel, the picture is darker than its planes tell (conic_shade). In one sample, a
  * direction's hidden light may be more than the whole; the mean of all is not. */
-static void take_row(void *data, size_t y, int i_thread) {
+static void take_row(void *data, size_t y) {
   const conic_light_work *l = data;
   float shaded[3];
-  (void)i_thread;
   for (size_t x = 0; x < (size_t)l->image->width; x++) {
     size_t pixel = conic_light_pixel(l, x, y);
     const float *hidden = l->hidden + 3 * pixel;

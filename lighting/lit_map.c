@@ -120,13 +120,12 @@ static size_t end_of_receivers(const conic_map_room *room, size_t begin) {
   return end < room->receivers->count ? end : room->receivers->count;
 }
 
-static void add_sky_light(void *data, size_t i_item, int i_thread) {
+static void add_sky_light(void *data, size_t i_item) {
   const sky_adding *a = data;
   const conic_sky_sums *sums = a->sums;
   const unsigned char *reached = a->reached ? a->reached + i_item * BYTES_OF_ITEM : NULL;
   float visible[CONIC_RECEIVED_TOGETHER], facing[CONIC_RECEIVED_TOGETHER];
   size_t begin = (a->first_item + i_item) * CONIC_RECEIVED_TOGETHER, count = end_of_receivers(a->room, begin) - begin;
-  (void)i_thread;
   a->room->loops.receive(a->map, a->room->receivers, begin, begin + count, 0, visible, facing);
   for (size_t i = 0; i < count && reached; i++)
     visible[i] = reached[i / 8] >> i % 8 & 1 ? 1.0f : 0.0f;
@@ -198,13 +197,12 @@ static size_t count_items_of(const sky_team *s, int index) {
   return first_item(s, index + 1) - first_item(s, index);
 }
 
-static void look_into_map(void *data, size_t i_item, int i_thread) {
+static void look_into_map(void *data, size_t i_item) {
   const sky_team *s = data;
   const sky_walk *w = s->walk;
   unsigned char *reached = s->drawn + i_item * BYTES_OF_ITEM;
   float visible[CONIC_RECEIVED_TOGETHER], facing[CONIC_RECEIVED_TOGETHER];
   size_t begin = i_item * CONIC_RECEIVED_TOGETHER, end = end_of_receivers(w->room, begin);
-  (void)i_thread;
   memset(reached, 0, BYTES_OF_ITEM);
   w->room->loops.receive(&w->map, w->room->receivers, begin, end, 0, visible, facing);
   for (size_t i = 0; i < end - begin; i++)

@@ -32,13 +32,12 @@ static int place_receiver(const receiver_rows *r, size_t x, size_t y, double wor
   return conic_pixel_place(&r->rays, (double)x + 0.5 + r->offset, (double)y + 0.5 + r->offset, z, world);
 }
 
-static void count_receivers(void *data, size_t y, int i_thread) {
+static void count_receivers(void *data, size_t y) {
   const receiver_rows *r = data;
   receiver_row row = {.low = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, .high = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
   size_t width = (size_t)r->camera->width;
   double world[3];
   int is_parallel = r->camera->kind == CONIC_CAMERA_ORTHOGRAPHIC;
-  (void)i_thread;
   for (size_t x = 0; x < width; x++) {
     if (!is_receiver(r, y * width + x) || !place_receiver(r, x, y, world))
       continue;
@@ -49,12 +48,11 @@ static void count_receivers(void *data, size_t y, int i_thread) {
   r->rows[y] = row;
 }
 
-static void take_receivers(void *data, size_t y, int i_thread) {
+static void take_receivers(void *data, size_t y) {
   const receiver_rows *r = data;
   conic_receivers *to = r->to;
   size_t width = (size_t)r->camera->width, place = r->rows[y].first;
   double world[3];
-  (void)i_thread;
   for (size_t x = 0; x < width; x++) {
     size_t pixel = y * width + x;
     if (!is_receiver(r, pixel) || !place_receiver(r, x, y, world))

@@ -12,12 +12,11 @@ typedef struct host_setup {
 } host_setup;
 
 /* One item of the device's, which is a chunk here. */
-static void project_item(void *data, size_t i_item, int i_thread) {
+static void project_item(void *data, size_t i_item) {
   host_setup *h = data;
   const conic_frame *f = h->frame;
   conic_chunk *chunk = &h->projected.chunks[i_item];
   size_t begin = i_item * f->splats_per_item, end = begin + f->splats_per_item;
-  (void)i_thread;
   memset(chunk, 0, sizeof *chunk);
   chunk->first = chunk->first_ray = begin;
   end = end < f->n ? end : f->n;

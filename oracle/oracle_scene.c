@@ -306,9 +306,8 @@ static oracle_reach find_reach(const oracle_scene *scene, size_t i) {
 
 enum { A_RUN = 1024 };
 
-static void find_reaches(void *data, size_t i_item, int i_thread) {
+static void find_reaches(void *data, size_t i_item) {
   oracle_scene *scene = data;
-  (void)i_thread;
   for (size_t i = i_item * A_RUN; i < (i_item + 1) * A_RUN && i < scene->splats->count; i++)
     scene->reaches[i] = find_reach(scene, i);
 }

@@ -79,11 +79,10 @@ typedef struct turn_work {
   conic_image *image;
 } turn_work;
 
-static void turn_row(void *data, size_t y, int i_thread) {
+static void turn_row(void *data, size_t y) {
   const turn_work *work = data;
   size_t width = (size_t)work->image->width;
   float *normal = (float *)work->image->planes[CONIC_PLANE_NORMAL] + 3 * width * y;
-  (void)i_thread;
   for (size_t x = 0; x < width; x++, normal += 3) {
     const double n[3] = {(double)normal[0], (double)normal[1], (double)normal[2]};
     for (int row = 0; row < 3; row++)

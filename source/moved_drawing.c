@@ -120,11 +120,10 @@ static void meet_axes(const double u[3], const double v[3], double other_u[3], d
   }
 }
 
-static void move_splats(void *data, size_t i_chunk, int i_thread) {
+static void move_splats(void *data, size_t i_chunk) {
   const moving *work = data;
   const conic_splats *from = work->shapes[0] ? work->shapes[0] : work->rest, *next = work->shapes[1];
   size_t shift = work->shapes[0] ? work->begin : 0, last = work->begin + (i_chunk + 1) * CHUNK;
-  (void)i_thread;
   for (size_t i = work->begin + i_chunk * CHUNK; i < last && i < work->end; i++) {
     double place[3], u[3], v[3], turned[3];
     load_place(from->origin, from->position, i - shift, place);
@@ -148,12 +147,11 @@ static void move_splats(void *data, size_t i_chunk, int i_thread) {
   }
 }
 
-static void move_corners(void *data, size_t i_chunk, int i_thread) {
+static void move_corners(void *data, size_t i_chunk) {
   const moving *work = data;
   const conic_triangles *next = work->triangle_shapes[1],
                         *from = work->triangle_shapes[0] ? work->triangle_shapes[0] : work->rest_triangles;
   size_t shift = work->triangle_shapes[0] ? work->begin : 0, last = work->begin + (i_chunk + 1) * CHUNK;
-  (void)i_thread;
   for (size_t i = work->begin + i_chunk * CHUNK; i < last && i < work->end; i++) {
     double place[3], place_next[3];
     load_place(from->origin, from->position, i - shift, place);
@@ -166,12 +164,11 @@ static void move_corners(void *data, size_t i_chunk, int i_thread) {
 }
 
 /* Normals may have any length: only the direction of their mean counts. */
-static void move_normals(void *data, size_t i_chunk, int i_thread) {
+static void move_normals(void *data, size_t i_chunk) {
   const moving *work = data;
   const conic_triangles *next = work->triangle_shapes[1],
                         *from = work->triangle_shapes[0] ? work->triangle_shapes[0] : work->rest_triangles;
   size_t shift = work->triangle_shapes[0] ? work->begin : 0, last = work->begin + (i_chunk + 1) * CHUNK;
-  (void)i_thread;
   for (size_t i = work->begin + i_chunk * CHUNK; i < last && i < work->end; i++) {
     double normal[3], normal_next[3], turned[3];
     conic_vector_at(from->normal, i - shift, normal);
@@ -185,7 +182,7 @@ static void move_normals(void *data, size_t i_chunk, int i_thread) {
   }
 }
 
-static void run_over(conic_context *context, const size_t range[2], conic_task *task, moving *work) {
+static void run_over(conic_context *context, const size_t range[2], conic_task task, moving *work) {
   work->begin = range[0];
   work->end = range[1];
   conic_parallel_region(context, "move", (range[1] - range[0] + CHUNK - 1) / CHUNK, task, work);
@@ -218,7 +215,7 @@ void conic_moved_put(conic_context *context, const conic_drawing *rest, const co
     const double *a = pose->world_from_rest[(row + 1) % 3], *b = pose->world_from_rest[(row + 2) % 3];
     conic_cross(a, b, work.normal_from_rest[row]);
   }
-  run_over(context, range->splats, move_splats, &work);
-  run_over(context, range->vertices, move_corners, &work);
-  run_over(context, range->normals, move_normals, &work);
+  run_over(context, range->splats, CONIC_TASK(move_splats), &work);
+  run_over(context, range->vertices, CONIC_TASK(move_corners), &work);
+  run_over(context, range->normals, CONIC_TASK(move_normals), &work);
 }

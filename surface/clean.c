@@ -92,7 +92,7 @@ static conic_status clean_leaves(points_cleaning *work, double begin, double end
   conic_own_points *own = work->own;
   conic_team_loop loop = {.name = "project", .from = begin, .to = end, .n_a_run = CHUNKS_A_REPORT};
   loop.n_items = (n_leaves + CHUNK - 1) / CHUNK;
-  loop.task = clean_chunk;
+  loop.task = CONIC_TASK(clean_chunk);
   loop.data = work;
   loop.first_of = first_slot;
   int n = 0;

@@ -81,16 +81,14 @@ static void choose_side(const sides_search *search, size_t slot) {
     surface->creases.side[slot][axis] = (float)best->normal[axis];
 }
 
-static void fit_windows(void *data, size_t i_item, int i_thread) {
+static void fit_windows(void *data, size_t i_item) {
   sides_search *search = data;
-  (void)i_thread;
   for (size_t i = i_item * CHUNK; i < (i_item + 1) * CHUNK && i < search->surface->tree.n_slots; i++)
     fit_window(search, i, &search->planes[i]);
 }
 
-static void choose_sides(void *data, size_t i_item, int i_thread) {
+static void choose_sides(void *data, size_t i_item) {
   sides_search *search = data;
-  (void)i_thread;
   for (size_t i = i_item * CHUNK; i < (i_item + 1) * CHUNK && i < search->surface->tree.n_slots; i++)
     choose_side(search, i);
 }

@@ -260,10 +260,9 @@ static int decide_splat(const cutting *c, size_t i) {
   return !stays ? DROPPED : n_cut ? CUT : KEPT;
 }
 
-static void decide_chunk(void *data, size_t i_item, int i_thread) {
+static void decide_chunk(void *data, size_t i_item) {
   const cutting *c = data;
   size_t end = (i_item + 1) * CHUNK < c->of->splats->count ? (i_item + 1) * CHUNK : c->of->splats->count;
-  (void)i_thread;
   for (size_t i = i_item * CHUNK; i < end; i++)
     c->of->fate[i] = (uint8_t)decide_splat(c, i);
 }

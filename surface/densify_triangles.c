@@ -62,10 +62,9 @@ static size_t first_slot_of_leaves(const void *data, size_t i_item) {
 
 /* --- triangles of neighbours --- */
 
-static void find_fans(void *data, size_t i_item, int i_thread) {
+static void find_fans(void *data, size_t i_item) {
   triangle_search *search = data;
   const conic_surface *surface = search->found->surface;
-  (void)i_thread;
   for (size_t slot = i_item * FANS; slot < (i_item + 1) * FANS && slot < surface->tree.n_slots; slot++) {
     double most = search->options->hole > 0.0 ? search->options->hole : HOLE * (double)surface->h[slot], normal[3];
     for (int axis = 0; axis < 3; axis++)
@@ -170,7 +169,8 @@ conic_status conic_densify_triangles_find(const conic_surface *surface, const co
   triangles->normals = conic_memory_allocate(context, surface->tree.n_slots, sizeof *triangles->normals);
   if (!triangles->normals)
     return CONIC_ERROR_MEMORY;
-  conic_team_loop loop = {.name = "densify", .n_a_run = CHUNKS_A_REPORT, .task = find_normals, .data = &search};
+  conic_team_loop loop = {
+      .name = "densify", .n_a_run = CHUNKS_A_REPORT, .task = CONIC_TASK(find_normals), .data = &search};
   loop.n_items = (surface->tree.n_leaves + CHUNK - 1) / CHUNK;
   loop.first_of = first_slot_of_leaves;
   loop.columns[0] = (conic_team_column){triangles->normals, sizeof *triangles->normals};

@@ -189,14 +189,13 @@ static void fill_slots(conic_surface *surface) {
 }
 
 /* A slot's own scale, with which its n_local-th neighbour lies at the neglect distance. */
-static void find_local_h(void *data, size_t i_item, int i_thread) {
+static void find_local_h(void *data, size_t i_item) {
   conic_surface *surface = data;
   const conic_neighbours *tree = &surface->tree;
   size_t end = (i_item + 1) * CHUNK < tree->n_slots ? (i_item + 1) * CHUNK : tree->n_slots;
   uint32_t slots[64];
   double distances2[64];
   size_t n = 0;
-  (void)i_thread;
   for (size_t slot = i_item * CHUNK; slot < end; slot++) {
     const double query[3] = {(double)tree->position[0][slot], (double)tree->position[1][slot],
                              (double)tree->position[2][slot]};

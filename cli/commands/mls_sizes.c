@@ -77,9 +77,8 @@ static int keeps_outline(const outline_keeping *work, size_t i) {
   return 0;
 }
 
-static void keep_chunk(void *data, size_t i_item, int i_thread) {
+static void keep_chunk(void *data, size_t i_item) {
   outline_keeping *work = data;
-  (void)i_thread;
   for (size_t i = i_item * CHUNK; i < (i_item + 1) * CHUNK && i < work->from->count; i++)
     work->is_kept[i] = (uint8_t)keeps_outline(work, i);
 }

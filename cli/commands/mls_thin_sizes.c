@@ -90,9 +90,8 @@ static uint32_t owner_of(const thin_sizing *work, size_t i) {
   return n && !stands_as_dot(whole, i) ? work->tree.point_of_slot[slots[0]] : CONIC_NO_SLOT;
 }
 
-static void find_owners(void *data, size_t i_item, int i_thread) {
+static void find_owners(void *data, size_t i_item) {
   thin_sizing *work = data;
-  (void)i_thread;
   for (size_t i = i_item * CHUNK; i < (i_item + 1) * CHUNK && i < work->whole->count; i++)
     work->owners[i] = owner_of(work, i);
 }

@@ -269,13 +269,12 @@ static conic_status list_clusters(matte_pass *pass, const conic_image *fine) {
   return CONIC_OK;
 }
 
-static void rank_row(void *data, size_t i_row, int i_thread) {
+static void rank_row(void *data, size_t i_row) {
   const matte_pass *pass = data;
   uint32_t bits[MOST_SAMPLES];
   size_t samples = (size_t)pass->job->shot.view.samples, fine_width = (size_t)pass->fine->width;
   size_t width = (size_t)pass->image->width;
   const uint32_t *names = pass->fine->planes[pass->naming];
-  (void)i_thread;
   for (size_t x = 0; x < width; x++) {
     for (size_t k = 0; k < samples * samples; k++) {
       uint32_t name = names[(i_row * samples + k / samples) * fine_width + x * samples + k % samples];

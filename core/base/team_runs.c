@@ -53,7 +53,8 @@ static team_blocks divide_loop(const conic_team *team, const conic_team_loop *lo
 static void do_own_item(void *data, size_t i_item, int i_thread) {
   const team_blocks *blocks = data;
   size_t row = i_item / blocks->block_items, i_block = row * (size_t)blocks->team->count + (size_t)blocks->team->index;
-  blocks->loop->task(blocks->loop->data, block_begin(blocks, i_block) + i_item % blocks->block_items, i_thread);
+  conic_task_do(blocks->loop->task, blocks->loop->data, block_begin(blocks, i_block) + i_item % blocks->block_items,
+                i_thread);
 }
 
 static size_t count_own_items(const team_blocks *blocks) {
@@ -140,7 +141,7 @@ static void exchange_values(const team_blocks *blocks, char *own) {
   }
 }
 
-static conic_status do_loop(conic_context *context, const conic_team_loop *loop, size_t n_items, conic_task *task,
+static conic_status do_loop(conic_context *context, const conic_team_loop *loop, size_t n_items, conic_task task,
                             void *data) {
   return loop->n_a_run
              ? conic_parallel_runs(context, loop->name, loop->from, loop->to, n_items, loop->n_a_run, task, data)
@@ -157,7 +158,7 @@ conic_status conic_team_runs(conic_context *context, const conic_team_loop *loop
   conic_status status = agree_on(context, CONIC_OK);
   if (status != CONIC_OK)
     return status;
-  status = do_loop(context, loop, count_own_items(&blocks), do_own_item, &blocks);
+  status = do_loop(context, loop, count_own_items(&blocks), CONIC_TASK(do_own_item), &blocks);
   if (status == CONIC_OK && !(own = conic_memory_allocate(context, most_own_bytes(&blocks), 1)))
     status = CONIC_ERROR_MEMORY;
   status = agree_on(context, status);

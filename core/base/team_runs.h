@@ -28,7 +28,7 @@ typedef struct conic_team_loop {
   double from, to;
   size_t n_items, n_a_run; /* … and is reported before every n_a_run items; 0: before each item, as in
                               conic_parallel_told */
-  conic_task *task;
+  conic_task task;
   void *data;
   /* Each item makes n_an_item values of every column, the last item the remaining ones of n_values, and changes nothing
    * else that is used later. Where items make different numbers, first_of(data, i) is the first value of item i, and
@@ -39,8 +39,10 @@ typedef struct conic_team_loop {
 } conic_team_loop;
 
 /* A loop over n_values, n_an_item in each item, without columns yet. */
-static inline conic_team_loop conic_team_loop_of(const char *name, double from, double to, size_t n_values,
-                                                 size_t n_an_item, size_t n_a_run, conic_task *task, void *data) {
+#define conic_team_loop_of(name, from, to, n_values, n_an_item, n_a_run, task, data)                                   \
+  conic_team_loop_make(name, from, to, n_values, n_an_item, n_a_run, CONIC_TASK(task), data)
+static inline conic_team_loop conic_team_loop_make(const char *name, double from, double to, size_t n_values,
+                                                   size_t n_an_item, size_t n_a_run, conic_task task, void *data) {
   size_t n_items = (n_values + n_an_item - 1) / n_an_item;
   return (conic_team_loop){
       name, from, to, n_items, n_a_run, task, data, n_an_item, n_values, NULL, {{NULL, 0, NULL, 0}}};

@@ -24,7 +24,7 @@ struct conic_pool {
   conic_region_watch *watch; /* null: not told */
   void *watch_cookie;
 
-  conic_task *task;
+  conic_task task;
   void *data;
   size_t n_items;
   _Alignas(LINE_BYTES) atomic_size_t next_item;
@@ -43,7 +43,7 @@ static void do_items(conic_pool *pool, int i_thread) {
     size_t i_item = atomic_fetch_add_explicit(&pool->next_item, 1, memory_order_relaxed);
     if (i_item >= pool->n_items)
       return;
-    pool->task(pool->data, i_item, i_thread);
+    conic_task_do(pool->task, pool->data, i_item, i_thread);
   }
 }
 
@@ -155,10 +155,10 @@ static void tell_watch(const conic_pool *pool, const char *name, size_t n_items,
     pool->watch(pool->watch_cookie, name, n_items, n_done);
 }
 
-static void do_items_alone(const conic_pool *pool, const char *name, size_t n_items, conic_task *task, void *data) {
+static void do_items_alone(const conic_pool *pool, const char *name, size_t n_items, conic_task task, void *data) {
   tell_watch(pool, name, n_items, 0);
   for (size_t i_item = 0; i_item < n_items; i_item++) {
-    task(data, i_item, 0);
+    conic_task_do(task, data, i_item, 0);
     tell_watch(pool, name, n_items, i_item + 1);
   }
 }
@@ -178,7 +178,7 @@ int conic_parallel_threads(const conic_context *context) {
   return context->pool->watch ? context->options.threads : context->pool->n_used;
 }
 
-void conic_parallel_region(conic_context *context, const char *name, size_t n_items, conic_task *task, void *data) {
+void conic_parallel_do(conic_context *context, const char *name, size_t n_items, conic_task task, void *data) {
   conic_pool *pool = context->pool;
   if (n_items <= 1 || pool->n_used <= 1) {
     do_items_alone(pool, name, n_items, task, data);
@@ -202,18 +202,18 @@ void conic_parallel_region(conic_context *context, const char *name, size_t n_it
 }
 
 typedef struct run {
-  conic_task *task;
+  conic_task task;
   void *data;
   size_t first;
 } run;
 
 static void do_item_of_run(void *data, size_t i_item, int i_thread) {
   const run *now = data;
-  now->task(now->data, now->first + i_item, i_thread);
+  conic_task_do(now->task, now->data, now->first + i_item, i_thread);
 }
 
-conic_status conic_parallel_runs(conic_context *context, const char *name, double from, double to, size_t n_items,
-                                 size_t n_a_run, conic_task *task, void *data) {
+conic_status conic_parallel_do_runs(conic_context *context, const char *name, double from, double to, size_t n_items,
+                                    size_t n_a_run, conic_task task, void *data) {
   run now = {task, data, 0};
   for (; now.first < n_items; now.first += n_a_run) {
     size_t n_left = n_items - now.first;
@@ -230,7 +230,7 @@ typedef struct telling {
   const char *name;
   double from, to;
   size_t n_items;
-  conic_task *task;
+  conic_task task;
   void *data;
   atomic_size_t n_done;
   atomic_int is_stopped;
@@ -249,12 +249,12 @@ static void do_told_item(void *data, size_t i_item, int i_thread) {
       return;
     }
   }
-  t->task(t->data, i_item, i_thread);
+  conic_task_do(t->task, t->data, i_item, i_thread);
   atomic_fetch_add(&t->n_done, 1);
 }
 
-conic_status conic_parallel_told(conic_context *context, const char *name, double from, double to, size_t n_items,
-                                 conic_task *task, void *data) {
+conic_status conic_parallel_do_told(conic_context *context, const char *name, double from, double to, size_t n_items,
+                                    conic_task task, void *data) {
   telling t = {.context = context,
                .name = name,
                .from = from,

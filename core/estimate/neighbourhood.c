@@ -11,10 +11,9 @@ typedef struct slots_work {
   size_t n_slots;
 } slots_work;
 
-static void do_chunk(void *data, size_t i_item, int i_thread) {
+static void do_chunk(void *data, size_t i_item) {
   const slots_work *work = data;
   size_t begin = i_item * CHUNK;
-  (void)i_thread;
   work->task(work->data, begin, begin + CHUNK < work->n_slots ? begin + CHUNK : work->n_slots);
 }
 

@@ -159,17 +159,15 @@ static void make_subtree(build *b, size_t i_node, size_t first, size_t n_leaves)
   }
 }
 
-static void make_level_node(void *data, size_t i_item, int i_thread) {
+static void make_level_node(void *data, size_t i_item) {
   build *b = data;
   size_t n_leaves = b->tree->n_leaves / b->n_level_nodes;
-  (void)i_thread;
   make_node(b, b->n_level_nodes - 1 + i_item, i_item * n_leaves, n_leaves);
 }
 
-static void make_level_subtree(void *data, size_t i_item, int i_thread) {
+static void make_level_subtree(void *data, size_t i_item) {
   build *b = data;
   size_t n_leaves = b->tree->n_leaves / b->n_level_nodes;
-  (void)i_thread;
   make_subtree(b, b->n_level_nodes - 1 + i_item, i_item * n_leaves, n_leaves);
 }
 

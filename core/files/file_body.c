@@ -46,11 +46,10 @@ typedef struct sum_job {
   uint64_t sums[CONIC_FILE_MOST_ARRAYS];
 } sum_job;
 
-static void sum_task(void *data, size_t i, int i_thread) {
+static void sum_task(void *data, size_t i) {
   sum_job *job = data;
   const conic_file_array *array = &job->layout->arrays[i];
   const unsigned char *bytes = job->arrays[i];
-  (void)i_thread;
   if (job->is_file || !CONIC_IS_BIG_ENDIAN) {
     job->sums[i] = conic_checksum(bytes, array->n_bytes);
     return;
@@ -72,7 +71,7 @@ static uint64_t sum_all(conic_context *context, sum_job *job) {
     conic_parallel_for(context, n, sum_task, job);
   for (size_t i = 0; i < n; i++) {
     if (!context)
-      sum_task(job, i, 0);
+      sum_task(job, i);
     conic_store_64(bytes + 8 * i, job->sums[i]);
   }
   return conic_checksum(bytes, 8 * n);

@@ -19,11 +19,10 @@ static void locate_on_ray(const positions *work, double x_px, double y_px, doubl
     there[axis] = origin[axis] + z * direction[axis];
 }
 
-static void locate_row(void *data, size_t y, int i_thread) {
+static void locate_row(void *data, size_t y) {
   const positions *work = data;
   const conic_camera *camera = work->camera;
   size_t width = (size_t)camera->width;
-  (void)i_thread;
   for (size_t x = 0; x < width; x++) {
     const double z = (double)work->z[y * width + x];
     double there[3] = {z * (((double)x + 0.5 + work->offset - camera->cx) / camera->fx),

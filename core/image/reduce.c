@@ -20,12 +20,11 @@ static double share_in_span(size_t k, double begin, double end) {
   return last - first;
 }
 
-static void shrink_row(void *data, size_t y, int i_thread) {
+static void shrink_row(void *data, size_t y) {
   const shrinking *work = data;
   size_t width = (size_t)work->to->width;
   const float *from = (const float *)work->from->planes[CONIC_PLANE_RGBA] + 4 * y * (size_t)work->from->width;
   double *row = work->rows + 4 * y * width;
-  (void)i_thread;
   for (size_t x = 0; x < width; x++) {
     double begin, end, sums[4] = {0};
     span_of_box(x, work->from->width, work->to->width, &begin, &end);
@@ -37,12 +36,11 @@ static void shrink_row(void *data, size_t y, int i_thread) {
   }
 }
 
-static void shrink_column_part(void *data, size_t y, int i_thread) {
+static void shrink_column_part(void *data, size_t y) {
   const shrinking *work = data;
   size_t n = 4 * (size_t)work->to->width;
   float *to = (float *)work->to->planes[CONIC_PLANE_RGBA] + y * n;
   double begin, end;
-  (void)i_thread;
   span_of_box(y, work->from->height, work->to->height, &begin, &end);
   for (size_t i = 0; i < n; i++) {
     double sum = 0.0;

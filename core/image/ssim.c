@@ -112,11 +112,10 @@ static void add_moments(const color_work *work, const channel_work *buffers, dou
       sums[m] += buffers->moments[m * padded_width(work) + RADIUS + x];
 }
 
-static void compare_channel(void *data, size_t i_item, int i_thread) {
+static void compare_channel(void *data, size_t i_item) {
   color_work *work = data;
   channel_work *buffers = &work->channels[i_item];
   double whole[N_MOMENTS] = {0}, n = (double)(work->width * work->height);
-  (void)i_thread;
   for (size_t y = 0; y < work->height + RADIUS; y++) {
     if (y < work->height) {
       encode_row(work, (int)i_item, y);

@@ -131,11 +131,10 @@ static void point_channels(const conic_exr_bands *bands, exr_encode_pipeline_t *
   }
 }
 
-static void encode_chunk(void *data, size_t i_item, int i_thread) {
+static void encode_chunk(void *data, size_t i_item) {
   conic_exr_bands *bands = data;
   exr_chunk *chunk = &bands->chunks[i_item];
   int is_new = !chunk->pipeline.context;
-  (void)i_thread;
   if (is_new)
     chunk->result = exr_encoding_initialize(bands->file, 0, &chunk->info, &chunk->pipeline);
   else
@@ -159,7 +158,7 @@ static size_t pack_next_chunks(conic_exr_bands *bands, int *y, int end, int is_a
     *y = bands->chunks[n].info.start_y + bands->chunks[n].info.height;
   }
   for (size_t i = 0; i < n && *result == EXR_ERR_SUCCESS && is_alone; i++)
-    encode_chunk(bands, i, 0);
+    encode_chunk(bands, i);
   if (*result == EXR_ERR_SUCCESS && !is_alone)
     conic_parallel_for(bands->context, n, encode_chunk, bands);
   return n;

@@ -56,12 +56,11 @@ static void arrange_pixel(const float rgba[4], int is_straight, float color[4]) 
     color[c] = alpha > 0.0f ? rgba[c] / alpha : 0.0f;
 }
 
-static void encode_row(void *data, size_t y, int i_thread) {
+static void encode_row(void *data, size_t y) {
   const conversion *work = data;
   size_t n = (size_t)work->layout.n_channels, n_row = work->width * n;
   const float *rgba = work->rgba + y * work->width * 4;
   int has_curve = work->layout.tone != CONIC_TONE_SRGB && work->layout.sample_bytes < 4 && !work->layout.is_display;
-  (void)i_thread;
   for (size_t x = 0; x < work->width; x++) {
     float color[4];
     arrange_pixel(rgba + 4 * x, work->layout.is_straight, color);
@@ -96,11 +95,10 @@ static float decode_sample(const conversion *work, size_t i, int is_color) {
   return is_color && !work->layout.is_display ? work->tables.decoded[code] : (float)(code / 255.0);
 }
 
-static void decode_row(void *data, size_t y, int i_thread) {
+static void decode_row(void *data, size_t y) {
   const conversion *work = data;
   size_t n = (size_t)work->layout.n_channels;
   int is_grey = n < 3, has_alpha = conic_samples_have_alpha(work->layout);
-  (void)i_thread;
   for (size_t x = 0; x < work->width; x++) {
     float *pixel = work->rgba + (y * work->width + x) * 4;
     size_t first = (y * work->width + x) * n;

@@ -154,10 +154,9 @@ typedef struct sampling {
   size_t first_slab;
 } sampling;
 
-static void place_chunk(void *data, size_t i_item, int i_thread) {
+static void place_chunk(void *data, size_t i_item) {
   const sampling *work = data;
   uint64_t begin = (uint64_t)i_item * CHUNK, end = begin + CHUNK < work->n ? begin + CHUNK : work->n;
-  (void)i_thread;
   for (uint64_t k = begin; k < end; k++) {
     conic_scene_point point;
     work->scene->kind->place(work->scene, work->first + k, &point);
@@ -182,13 +181,12 @@ static void sample_lattice_point(void *cookie, const double start[3]) {
   finish_splat(work->scene, i, &point, work->splats, (size_t)(i - work->first));
 }
 
-static void sample_slab(void *data, size_t i_item, int i_thread) {
+static void sample_slab(void *data, size_t i_item) {
   const sampling *work = data;
   const conic_scene *scene = work->scene;
   size_t i_slab = work->first_slab + i_item;
   uint64_t n_found = scene->lattice.found_before[i_slab];
   slab_sampling slab = {work, n_found, conic_lattice_kept(&scene->lattice, n_found)};
-  (void)i_thread;
   scene->kind->walk(scene->surface, &scene->lattice, i_slab, sample_lattice_point, &slab);
 }
 

@@ -36,10 +36,9 @@ static void count_point(void *cookie, const double point[3]) {
   ++*(uint64_t *)cookie;
 }
 
-static void count_slab(void *data, size_t i_slab, int i_thread) {
+static void count_slab(void *data, size_t i_slab) {
   const counting *work = data;
   uint64_t n = 0;
-  (void)i_thread;
   work->walk(work->surface, work->lattice, i_slab, count_point, &n);
   work->lattice->found_before[i_slab + 1] = n;
 }

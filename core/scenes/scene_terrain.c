@@ -112,11 +112,10 @@ static double stretch(const conic_terrain_place *place) {
   return sqrt(1.0 + place->slope[0] * place->slope[0] + place->slope[1] * place->slope[1]);
 }
 
-static void measure_row(void *data, size_t i_row, int i_thread) {
+static void measure_row(void *data, size_t i_row) {
   area_measuring *work = data;
   const double step = 2.0 / AREA_CELLS;
   double sum = 0.0;
-  (void)i_thread;
   for (int i = 0; i < AREA_CELLS; i++) {
     conic_terrain_place place;
     conic_terrain_at(work->seed, ((double)i + 0.5) * step - 1.0, ((double)i_row + 0.5) * step - 1.0, &place);

@@ -83,11 +83,10 @@ static void face_dot(const facing_work *work, size_t i) {
   }
 }
 
-static void face_chunk(void *data, size_t i_item, int i_thread) {
+static void face_chunk(void *data, size_t i_item) {
   const facing_work *work = data;
   const conic_splats *splats = work->splats;
   size_t begin = i_item * CHUNK, end = begin + CHUNK < splats->count ? begin + CHUNK : splats->count;
-  (void)i_thread;
   for (size_t i = begin; i < end; i++)
     if (conic_column_at(splats->dot, splats->strides.dot, i) != 0.0f)
       face_dot(work, i);

@@ -354,10 +354,9 @@ static void fill_smooth(profile_table *table, const normal_table *normal, int lo
   }
 }
 
-static void fill_level(void *data, size_t i_level, int i_thread) {
+static void fill_level(void *data, size_t i_level) {
   profile_table *table = data;
   normal_table normal;
-  (void)i_thread;
   fill_normal(&normal);
   if (i_level < SMOOTH)
     fill_smooth(table, &normal, (int)i_level);

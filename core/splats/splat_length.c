@@ -27,10 +27,9 @@ typedef struct length_list {
   uint32_t *bits;
 } length_list;
 
-static void length_chunk(void *data, size_t i_chunk, int i_thread) {
+static void length_chunk(void *data, size_t i_chunk) {
   const length_list *list = data;
   size_t begin = i_chunk * CHUNK, end = begin + CHUNK < list->splats->count ? begin + CHUNK : list->splats->count;
-  (void)i_thread;
   for (size_t i = begin; i < end; i++)
     list->bits[i] = length_bits(list->splats, i);
 }

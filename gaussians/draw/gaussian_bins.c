@@ -47,13 +47,11 @@ static void visit(const bin_job *j, size_t i_run, int writes) {
   }
 }
 
-static void count_run(void *data, size_t i_run, int i_thread) {
-  (void)i_thread;
+static void count_run(void *data, size_t i_run) {
   visit(data, i_run, 0);
 }
 
-static void fill_run(void *data, size_t i_run, int i_thread) {
-  (void)i_thread;
+static void fill_run(void *data, size_t i_run) {
   visit(data, i_run, 1);
 }
 

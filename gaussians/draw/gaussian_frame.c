@@ -42,14 +42,13 @@ static size_t count_met_tiles(const conic_gaussian_footprint *f) {
   return across * down;
 }
 
-static void set_up_run(void *data, size_t i_run, int i_thread) {
+static void set_up_run(void *data, size_t i_run) {
   frame *f = data;
   size_t begin = i_run * SET_UP_RUN, to = begin;
   size_t end = begin + SET_UP_RUN < f->set->count ? begin + SET_UP_RUN : f->set->count;
   conic_gaussian_ray unused;
   conic_gaussian_filter unused_filter;
   conic_gaussian_sight unused_sight;
-  (void)i_thread;
   for (size_t i = begin; i < end; i++) {
     conic_gaussian_fate fate =
         conic_gaussian_set_up(&f->view, f->set, i, &f->footprints[to], &f->keys[to], f->rays ? &f->rays[to] : &unused,

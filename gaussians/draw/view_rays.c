@@ -33,7 +33,7 @@ static void enclose(const double (*directions)[3], size_t n, conic_view_cone *co
   cone->sine = sqrt(1.0 - cone->cosine * cone->cosine);
 }
 
-static void find_tile_rays(void *data, size_t i_tile, int i_thread) {
+static void find_tile_rays(void *data, size_t i_tile) {
   ray_job *j = data;
   conic_sight_rays *to = &j->rays->tiles[i_tile];
   const conic_camera *camera = j->rays->camera;
@@ -41,7 +41,6 @@ static void find_tile_rays(void *data, size_t i_tile, int i_thread) {
   int y = (int)(i_tile / (size_t)j->rays->n_tiles[0]) * CONIC_GAUSSIAN_TILE;
   double directions[CONIC_GAUSSIAN_TILE_PIXELS][3], origin[3], direction[3];
   size_t n = 0;
-  (void)i_thread;
   for (size_t at = 0; at < CONIC_GAUSSIAN_TILE_PIXELS; at++) {
     int column = x + conic_gaussian_column(at), row = y + conic_gaussian_row(at);
     int is_there = column < camera->width && row < camera->height &&

@@ -59,10 +59,9 @@ float conic_logit_of_opacity(float opacity) {
   return (float)(conic_logarithm((double)opacity) - conic_logarithm(1.0 - (double)opacity));
 }
 
-static void activate_block(void *data, size_t i_block, int i_thread) {
+static void activate_block(void *data, size_t i_block) {
   conic_gaussians *gaussians = data;
   size_t first = i_block * BLOCK, left = gaussians->count - first, n = left < BLOCK ? left : BLOCK;
-  (void)i_thread;
   for (int axis = 0; axis < 3; axis++) {
     float *scale = gaussians->scale[axis] ? gaussians->scale[axis] + first : NULL;
     if (scale && gaussians->log_scale[axis])

@@ -94,13 +94,12 @@ static void turn_quaternion(const double by[4], float *const rotation[4], size_t
     rotation[k][i_gaussian] = turned[k];
 }
 
-static void turn_block(void *data, size_t i_block, int i_thread) {
+static void turn_block(void *data, size_t i_block) {
   turner *self = data;
   conic_gaussians *gaussians = self->gaussians;
   size_t first = i_block * BLOCK, left = gaussians->count - first, end = first + (left < BLOCK ? left : BLOCK);
   size_t n = conic_harmonics_of_degree(gaussians->sh_degree);
   float room[CONIC_MOST_HARMONICS];
-  (void)i_thread;
   for (size_t i = first; i < end; i++) {
     double mean[3];
     conic_vector_at(gaussians->position, i, mean);

@@ -122,9 +122,8 @@ static void color_by_place(const made_scene *scene, size_t i, const made_place *
     }
 }
 
-static void make_run(void *data, size_t i_run, int i_thread) {
+static void make_run(void *data, size_t i_run) {
   const made_scene *scene = data;
-  (void)i_thread;
   for (size_t i = i_run * MADE_RUN; i < (i_run + 1) * MADE_RUN && i < scene->set->count; i++) {
     made_place place = choose_place(scene, i);
     double off = 0.2 * place.spacing * conic_random_gaussian(scene->seed, i, DEPTH);

@@ -27,10 +27,9 @@ typedef struct gatherer {
   size_t n, bytes; /* of an element */
 } gatherer;
 
-static void gather_block(void *data, size_t i_block, int i_thread) {
+static void gather_block(void *data, size_t i_block) {
   const gatherer *self = data;
   size_t end = (i_block + 1) * BLOCK < self->n ? (i_block + 1) * BLOCK : self->n;
-  (void)i_thread;
   if (self->bytes == sizeof(float))
     for (size_t i = i_block * BLOCK; i < end; i++)
       ((float *)self->to)[i] = ((const float *)self->from)[self->order[i]];

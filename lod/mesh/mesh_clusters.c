@@ -112,10 +112,9 @@ static void evaluate_joint(joining *j, uint32_t i) {
 
 enum { CHUNK = 4096 };
 
-static void evaluate_task(void *data, size_t i_chunk, int i_thread) {
+static void evaluate_task(void *data, size_t i_chunk) {
   joining *j = data;
   size_t begin = i_chunk * CHUNK, end = begin + CHUNK < j->n_joints ? begin + CHUNK : j->n_joints;
-  (void)i_thread;
   for (size_t i = begin; i < end; i++)
     if (j->joints[i].length >= 0.0) {
       j->keys[i] = cost_of(j, (uint32_t)i);

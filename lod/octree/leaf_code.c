@@ -150,10 +150,9 @@ static void code_block(const leaf_job *job, size_t i_block) {
   }
 }
 
-static void code_task(void *data, size_t i_task, int i_thread) {
+static void code_task(void *data, size_t i_task) {
   const leaf_job *job = data;
   size_t begin = i_task * BLOCKS_A_TASK, end = begin + BLOCKS_A_TASK, n_blocks = count_blocks(job->leaves->count);
-  (void)i_thread;
   for (size_t i = begin; i < end && i < n_blocks; i++)
     code_block(job, i);
 }

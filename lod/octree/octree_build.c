@@ -50,11 +50,10 @@ typedef struct sorting_out {
   uint8_t *kinds;
 } sorting_out;
 
-static void kind_chunk(void *data, size_t i_chunk, int i_thread) {
+static void kind_chunk(void *data, size_t i_chunk) {
   const sorting_out *s = data;
   size_t begin = i_chunk * chunk_splats,
          end = begin + chunk_splats < s->splats->count ? begin + chunk_splats : s->splats->count;
-  (void)i_thread;
   for (size_t i = begin; i < end; i++)
     s->kinds[i] = !is_drawable(s->splats, i) ? KIND_UNDRAWN : is_in_reach(s->splats, i) ? KIND_DRAWN : KIND_FAR;
 }
@@ -96,10 +95,9 @@ typedef struct gathering {
   size_t n;
 } gathering;
 
-static void gather_chunk(void *data, size_t i_chunk, int i_thread) {
+static void gather_chunk(void *data, size_t i_chunk) {
   const gathering *g = data;
   size_t begin = i_chunk * chunk_splats, end = begin + chunk_splats < g->n ? begin + chunk_splats : g->n;
-  (void)i_thread;
   for (size_t i = begin; i < end; i++)
     g->to[i] = g->from[g->index[i]];
 }
@@ -166,13 +164,12 @@ typedef struct ranging {
   leaf_range *chunks;
 } ranging;
 
-static void range_chunk(void *data, size_t i_chunk, int i_thread) {
+static void range_chunk(void *data, size_t i_chunk) {
   const ranging *r = data;
   const conic_splats *leaves = &r->octree->leaves;
   size_t begin = i_chunk * chunk_splats,
          end = begin + chunk_splats < r->octree->n_leaves ? begin + chunk_splats : r->octree->n_leaves;
   leaf_range range = {.color = 1.0f};
-  (void)i_thread;
   for (int axis = 0; axis < 3; axis++) {
     const float *positions = leaves->position[axis], *colors = leaves->color[axis];
     float low = positions[begin], high = low;

@@ -91,10 +91,9 @@ static void check_node(const conic_octree *octree, size_t i, conic_octree_defect
   found->errors += (broken & OUT_OF_ERROR) != 0;
 }
 
-static void check_task(void *data, size_t i_chunk, int i_thread) {
+static void check_task(void *data, size_t i_chunk) {
   const checking *job = data;
   size_t begin = i_chunk * chunk_nodes, end = begin + chunk_nodes, n = job->octree->n_nodes;
-  (void)i_thread;
   memset(&job->chunks[i_chunk], 0, sizeof *job->chunks);
   for (size_t i = begin; i < end && i < n; i++)
     check_node(job->octree, i, &job->chunks[i_chunk]);

@@ -413,9 +413,8 @@ static conic_status run_subtree(const error_pass *pass, size_t root) {
   return status;
 }
 
-static void run_task(void *data, size_t i_task, int i_thread) {
+static void run_task(void *data, size_t i_task) {
   error_pass *pass = data;
-  (void)i_thread;
   pass->statuses[i_task] = run_subtree(pass, pass->tasks[i_task]);
 }
 
@@ -452,7 +451,7 @@ static conic_status run_pass(error_pass *pass) {
   if (status == CONIC_OK) {
     list_tasks(pass, pass->tasks);
     conic_team_loop loop = {.name = "octree", .from = pass->from, .to = pass->to, .n_items = pass->n_tasks};
-    loop.task = run_task;
+    loop.task = CONIC_TASK(run_task);
     loop.data = pass;
     loop.first_of = first_node_of_task;
     loop.columns[0] = (conic_team_column){pass->octree->codes, CONIC_NODE_BYTES};

@@ -101,13 +101,12 @@ static size_t count_color_chunks(const conic_octree *octree) {
   return (octree->leaves.count + COLOR_CHUNK - 1) / COLOR_CHUNK;
 }
 
-static void code_colors(void *data, size_t i_chunk, int i_thread) {
+static void code_colors(void *data, size_t i_chunk) {
   const color_coding *c = data;
   const conic_code_scale *scale = &c->octree->scale;
   const conic_splats *leaves = &c->octree->leaves;
   size_t begin = i_chunk * COLOR_CHUNK, end = begin + COLOR_CHUNK < leaves->count ? begin + COLOR_CHUNK : leaves->count;
   int are_codes = 1;
-  (void)i_thread;
   for (int channel = 0; channel < 3; channel++)
     for (size_t i = begin; i < end && are_codes; i++) {
       float value = leaves->color[channel][i];

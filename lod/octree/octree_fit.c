@@ -75,10 +75,9 @@ typedef struct scan {
   conic_leaf_reach *chunks;
 } scan;
 
-static void scan_chunk(void *data, size_t i_chunk, int i_thread) {
+static void scan_chunk(void *data, size_t i_chunk) {
   const scan *s = data;
   size_t begin = s->begin + i_chunk * chunk_leaves, end = begin + chunk_leaves < s->end ? begin + chunk_leaves : s->end;
-  (void)i_thread;
   memset(&s->chunks[i_chunk], 0, sizeof *s->chunks);
   s->chunks[i_chunk].cosine = 1.0;
   s->fitter->loops.add_reach(&s->fitter->octree->leaves, begin, end, s->fitter->octree->scale.cutoff, s->frame,
@@ -209,9 +208,8 @@ static conic_status fit_top(fitter *f, size_t i, conic_moments *moments) {
   return fit_subtree(f, i, 1, moments);
 }
 
-static void run_task(void *data, size_t i_task, int i_thread) {
+static void run_task(void *data, size_t i_task) {
   fitter *f = data;
-  (void)i_thread;
   fit_subtree(f, f->tasks[i_task].i_node, 0, &f->tasks[i_task].result); /* too small to allocate, so it cannot fail */
 }
 
@@ -247,7 +245,7 @@ conic_status conic_octree_fit(conic_octree *octree) {
   if (!f.tasks)
     return CONIC_ERROR_MEMORY;
   list_tasks(octree, f.tasks);
-  conic_team_loop loop = {"octree", 0.4, 0.6, f.n_tasks, 0, run_task, &f, .first_of = first_node_of_fit};
+  conic_team_loop loop = {"octree", 0.4, 0.6, f.n_tasks, 0, CONIC_TASK(run_task), &f, .first_of = first_node_of_fit};
   loop.columns[0] = (conic_team_column){octree->codes, CONIC_NODE_BYTES};
   loop.columns[1] = (conic_team_column){f.tasks, sizeof *f.tasks, .is_by_item = 1};
   status = conic_team_runs(octree->context, &loop);

@@ -101,11 +101,10 @@ static float excess_of(const conic_code_scale *scale, const conic_node *node) {
   return times > 1.0f ? times * times : 1.0f;
 }
 
-static void decode_chunk(void *data, size_t i_chunk, int i_thread) {
+static void decode_chunk(void *data, size_t i_chunk) {
   conic_octree *octree = data;
   size_t begin = i_chunk * chunk_nodes,
          end = begin + chunk_nodes < octree->n_nodes ? begin + chunk_nodes : octree->n_nodes;
-  (void)i_thread;
   for (size_t i = begin; i < end; i++) {
     conic_node node;
     double first[3];
@@ -158,11 +157,10 @@ conic_status conic_octree_decode(conic_octree *octree) {
   return status;
 }
 
-static void copy_chunk(void *data, size_t i_chunk, int i_thread) {
+static void copy_chunk(void *data, size_t i_chunk) {
   conic_octree *octree = data;
   const conic_splats *leaves = &octree->leaves;
   size_t begin = i_chunk * chunk_nodes, end = begin + chunk_nodes;
-  (void)i_thread;
   for (size_t i = begin; i < end && i < octree->n_leaves; i++) {
     conic_drawn_node drawn = {.opacity = leaves->opacity ? leaves->opacity[i] : 1.0f, .id = octree->index[i]};
     for (int axis = 0; axis < 3; axis++) {
@@ -200,12 +198,11 @@ typedef struct node_spreads {
   float *radii, *cones;
 } node_spreads;
 
-static void spread_chunk(void *data, size_t i_chunk, int i_thread) {
+static void spread_chunk(void *data, size_t i_chunk) {
   const node_spreads *spreads = data;
   const conic_octree *octree = spreads->octree;
   size_t begin = i_chunk * chunk_nodes,
          end = begin + chunk_nodes < octree->n_nodes ? begin + chunk_nodes : octree->n_nodes;
-  (void)i_thread;
   for (size_t i = begin; i < end; i++) {
     const uint8_t *code = octree->codes + i * CONIC_NODE_BYTES;
     spreads->radii[i] = conic_code_radius_of(&octree->scale, code);
@@ -274,13 +271,12 @@ typedef struct leaf_copy {
   conic_splats *splats;
 } leaf_copy;
 
-static void copy_leaves(void *data, size_t i_chunk, int i_thread) {
+static void copy_leaves(void *data, size_t i_chunk) {
   const leaf_copy *copy = data;
   const conic_splats *from = &copy->octree->leaves;
   conic_splats *to = copy->splats;
   const uint32_t *index = copy->octree->index;
   size_t begin = i_chunk * chunk_nodes, end = begin + chunk_nodes < from->count ? begin + chunk_nodes : from->count;
-  (void)i_thread;
   for (int axis = 0; axis < 3; axis++)
     for (size_t i = begin; i < end; i++) {
       to->position[axis][index[i]] = from->position[axis][i];

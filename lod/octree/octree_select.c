@@ -101,10 +101,9 @@ static void walk_block(const octree_selecting *s, selection_piece *block) {
   block->count = (size_t)(next - sources);
 }
 
-static void count_task(void *data, size_t i_task, int i_thread) {
+static void count_task(void *data, size_t i_task) {
   octree_selecting *s = data;
   size_t begin = i_task * PIECES_A_TASK, end = begin + PIECES_A_TASK;
-  (void)i_thread;
   for (size_t i = begin; i < end && i < s->scratch->n_pieces; i++) {
     selection_piece *p = &s->scratch->pieces[i];
     if (p->kind == PIECE_BLOCK)
@@ -118,11 +117,10 @@ static void put_splats(const octree_selecting *s, const uint32_t *sources, size_
          begin);
 }
 
-static void fill_task(void *data, size_t i_task, int i_thread) {
+static void fill_task(void *data, size_t i_task) {
   octree_selecting *s = data;
   octree_scratch *kept = s->scratch;
   size_t begin = i_task * PIECES_A_TASK, end = begin + PIECES_A_TASK;
-  (void)i_thread;
   for (size_t i = begin; i < end && i < kept->n_pieces; i++) {
     const selection_piece *p = &kept->pieces[i];
     if (p->kind == PIECE_BLOCK)

@@ -209,10 +209,9 @@ static conic_status split_top(conic_context *context, splitter *s, size_t begin,
   return status;
 }
 
-static void split_task(void *data, size_t i_item, int i_thread) {
+static void split_task(void *data, size_t i_item) {
   splitter *s = data;
   top_item *item = &s->top[i_item];
-  (void)i_thread;
   if (item->end > item->begin)
     item->n_nodes = split_subtree(s, item->begin, item->end, item->depth, s->children + item->begin);
 }

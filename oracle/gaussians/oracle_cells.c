@@ -43,10 +43,9 @@ static void box_of_reach(const oracle_bound_request *b, const oracle_uncertain *
   }
 }
 
-static void box_gaussians(void *data, size_t i_run, int i_thread) {
+static void box_gaussians(void *data, size_t i_run) {
   cell_job *j = data;
   const size_t n = j->b->doubting.set->count;
-  (void)i_thread;
   for (size_t i = i_run * PLACE_RUN; i < (i_run + 1) * PLACE_RUN && i < n; i++) {
     oracle_uncertain g;
     j->boxes[i] = (cell_box){{1, 1}, {0, 0}};

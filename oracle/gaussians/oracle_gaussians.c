@@ -136,9 +136,8 @@ static int compare_coverings(const void *a, const void *b) {
   return compare_order(x->key, y->key, x->gaussian->index, y->gaussian->index);
 }
 
-static void place_gaussians(void *data, size_t i_run, int i_thread) {
+static void place_gaussians(void *data, size_t i_run) {
   job *j = data;
-  (void)i_thread;
   for (size_t i = i_run * SET_UP_RUN; i < (i_run + 1) * SET_UP_RUN && i < j->set->count; i++)
     conic_oracle_gaussian_place(&j->view, j->set, i, &j->gaussians[i]);
 }
@@ -251,9 +250,8 @@ static void draw_row_again(void *data, size_t row, int i_thread) {
   }
 }
 
-static void find_rays_of_row(void *data, size_t row, int i_thread) {
+static void find_rays_of_row(void *data, size_t row) {
   const job *j = data;
-  (void)i_thread;
   conic_oracle_ray_row(j->view.camera, row, j->view.rays + row * (size_t)j->view.camera->width);
 }
 

@@ -11,9 +11,8 @@ typedef struct shown_rank {
   uint32_t index;
 } shown_rank;
 
-static void show_gaussians(void *data, size_t i_run, int i_thread) {
+static void show_gaussians(void *data, size_t i_run) {
   oracle_gradient_job *j = data;
-  (void)i_thread;
   for (size_t i = i_run * SHOW_RUN; i < (i_run + 1) * SHOW_RUN && i < j->set->count; i++)
     if (!conic_oracle_show(&j->view, j->set, i, &j->shown[i]))
       j->shown[i] = (oracle_shown){.first = {1, 1}};

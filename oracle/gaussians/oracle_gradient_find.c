@@ -72,9 +72,8 @@ static void hand_out(const oracle_gradient_job *j, size_t i, const oracle_parame
   g->doubt[i] |= p->doubts;
 }
 
-static void chain_run(void *data, size_t i_run, int i_thread) {
+static void chain_run(void *data, size_t i_run) {
   const oracle_gradient_job *j = data;
-  (void)i_thread;
   for (size_t i = i_run * CHAIN_RUN; i < (i_run + 1) * CHAIN_RUN && i < j->set->count; i++) {
     oracle_parameters p;
     if (!j->is_shown[i])

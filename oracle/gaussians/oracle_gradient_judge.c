@@ -198,9 +198,8 @@ static void judge_gaussian(const gradient_judge_job *job, size_t i, judge_run *r
     put_gradient_fault(job, &fault, run->worst, &run->n_worst);
 }
 
-static void judge_run_of_gaussians(void *data, size_t i_run, int i_thread) {
+static void judge_run_of_gaussians(void *data, size_t i_run) {
   const gradient_judge_job *job = data;
-  (void)i_thread;
   for (size_t i = i_run * RUN; i < (i_run + 1) * RUN && i < job->j->set->count; i++)
     judge_gaussian(job, i, &job->runs[i_run]);
 }
@@ -279,9 +278,8 @@ static void add_setup_in_float(const oracle_doubting *d, size_t i, const oracle_
   }
 }
 
-static void find_offs(void *data, size_t i_run, int i_thread) {
+static void find_offs(void *data, size_t i_run) {
   const offs_job *job = data;
-  (void)i_thread;
   for (size_t i = i_run * RUN; i < (i_run + 1) * RUN && i < job->d->set->count; i++) {
     oracle_uncertain g, colored;
     oracle_shown_off *to = &job->offs[i];

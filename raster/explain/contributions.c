@@ -15,9 +15,8 @@ const char *conic_fate_name(conic_fate fate) {
 CONIC_DEFINE_NAMES(conic_contribution_verdict_name, conic_contribution_verdict, CONIC_N_CONTRIBUTION_VERDICTS,
                    "visible", "hidden", "clipped", "outside")
 
-static void project_task(void *data, size_t i_chunk, int i_thread) {
+static void project_task(void *data, size_t i_chunk) {
   conic_contributions *c = data;
-  (void)i_thread;
   conic_project_chunk(&c->view, c->splats, i_chunk, &c->projected);
   if (c->projected.clips)
     conic_clip_chunk(&c->view, c->splats, i_chunk * CHUNK, &c->projected, &c->projected.chunks[i_chunk]);

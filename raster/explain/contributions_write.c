@@ -170,12 +170,11 @@ static conic_status pack_line(const lines *all, line *l) {
   return conic_deep_pack(c->context, &whole, c->view.width, &l->packed);
 }
 
-static void work_out(void *data, size_t i_item, int i_thread) {
+static void work_out(void *data, size_t i_item) {
   const lines *all = data;
   const conic_contributions *c = all->contributions;
   line *l = &all->lines[i_item];
   size_t width = (size_t)c->view.width;
-  (void)i_thread;
   memset(l->threshold, 0, width * sizeof *l->threshold);
   memset(l->nearest, 0xff, width * sizeof *l->nearest);
   memset(l->counts, 0, width * sizeof *l->counts);

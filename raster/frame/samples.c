@@ -89,11 +89,10 @@ static void take_central(const reduction *r, conic_plane plane, size_t corner, s
          sizeof *fine);
 }
 
-static void reduce_row(void *data, size_t i_row, int i_thread) {
+static void reduce_row(void *data, size_t i_row) {
   const reduction *r = data;
   void *const *planes = r->image->planes;
   size_t width = (size_t)r->fine->width / r->samples;
-  (void)i_thread;
   size_t first_corner = i_row * (size_t)r->fine->width * r->samples;
   size_t first = (r->first_row + i_row) * (size_t)r->image->width + r->first_column;
   if (planes[CONIC_PLANE_RGBA])
@@ -137,7 +136,7 @@ typedef struct census {
   conic_chunk *chunks; /* a task */
 } census;
 
-static void count_splats(void *data, size_t i_item, int i_thread) {
+static void count_splats(void *data, size_t i_item) {
   census *c = data;
   conic_footprint footprint;
   conic_box box;
@@ -146,7 +145,6 @@ static void count_splats(void *data, size_t i_item, int i_thread) {
   conic_projected place = {.footprints = &footprint, .boxes = &box, .surfaces = &surface, .rays = &ray};
   conic_chunk *chunk = &c->chunks[i_item];
   size_t first = i_item * COUNTED_TOGETHER, n = c->splats->count - first;
-  (void)i_thread;
   for (size_t i = 0; i < (n < COUNTED_TOGETHER ? n : COUNTED_TOGETHER); i++) {
     conic_chunk one = {.n_drawn = 0};
     if (c->is_counted && !c->is_counted[first + i])

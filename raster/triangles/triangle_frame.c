@@ -69,10 +69,9 @@ static conic_status plan_results(conic_triangle_frame *frame, size_t n_records, 
   return frame->records && frame->pieces && frame->entries ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
 
-static void vertices_task(void *data, size_t i_item, int i_thread) {
+static void vertices_task(void *data, size_t i_item) {
   preparation *p = data;
   size_t n = p->frame->triangles->n_vertices, begin = i_item * VERTICES_TOGETHER, end = begin + VERTICES_TOGETHER;
-  (void)i_thread;
   p->loops->vertices(p->frame, begin, end < n ? end : n, p->frame->vertices);
 }
 

@@ -80,14 +80,13 @@ static void reach_of_triangles(const reach *r, size_t first, size_t end, double 
     }
 }
 
-static void measure_reach_of_task(void *data, size_t i_item, int i_thread) {
+static void measure_reach_of_task(void *data, size_t i_item) {
   const reach *r = data;
   int is_splats = i_item < r->n_splat_tasks;
   size_t count = is_splats ? r->drawing->splats->count : r->drawing->triangles->count;
   size_t first = (is_splats ? i_item : i_item - r->n_splat_tasks) * MEASURED_TOGETHER;
   size_t end = count - first < MEASURED_TOGETHER ? count : first + MEASURED_TOGETHER;
   double *farthest = r->farthest + i_item * r->n;
-  (void)i_thread;
   for (size_t i = 0; i < r->n; i++)
     farthest[i] = -HUGE_VAL;
   (is_splats ? reach_of_splats : reach_of_triangles)(r, first, end, farthest);

@@ -141,9 +141,8 @@ static void plan_node(patches_planning *work, size_t i_node) {
   }
 }
 
-static void plan_subtree(void *data, size_t i_item, int i_thread) {
+static void plan_subtree(void *data, size_t i_item) {
   patches_planning *work = data;
-  (void)i_thread;
   plan_node(work, work->first_subtree + i_item);
 }
 

@@ -37,11 +37,10 @@ static size_t count_of(const patches_selecting *work, size_t point, uint32_t slo
   return n_fading + (patch->fence ? conic_grid_count(&part, patch->fence) : work->grid_counts[i_grid]);
 }
 
-static void count_chunk(void *data, size_t i_item, int i_thread) {
+static void count_chunk(void *data, size_t i_item) {
   patches_selecting *work = data;
   const conic_neighbours *tree = &work->patches->surface->tree;
   size_t end = (i_item + 1) * CHUNK < tree->n_points ? (i_item + 1) * CHUNK : tree->n_points, n = 0;
-  (void)i_thread;
   for (size_t i = i_item * CHUNK; i < end; i++)
     n += count_of(work, i, tree->slot_of_point[i]);
   work->chunk_starts[i_item + 1] = n;
@@ -150,11 +149,10 @@ static size_t put_point(const patches_selecting *work, size_t point, size_t at, 
   return n;
 }
 
-static void fill_chunk(void *data, size_t i_item, int i_thread) {
+static void fill_chunk(void *data, size_t i_item) {
   patches_selecting *work = data;
   size_t n_points = work->patches->surface->tree.n_points, at = work->chunk_starts[i_item], n_kept = 0;
   size_t end = (i_item + 1) * CHUNK < n_points ? (i_item + 1) * CHUNK : n_points;
-  (void)i_thread;
   for (size_t i = i_item * CHUNK; i < end; i++)
     at += put_point(work, i, at, &n_kept);
   work->chunk_kept[i_item] = n_kept;

@@ -17,10 +17,9 @@ typedef struct fan_pass {
   conic_fan *fans; /* by slot */
 } fan_pass;
 
-static void find_skin_fans(void *data, size_t i_item, int i_thread) {
+static void find_skin_fans(void *data, size_t i_item) {
   const fan_pass *pass = data;
   const conic_skin_search *search = pass->search;
-  (void)i_thread;
   for (size_t slot = i_item * SLOTS_A_TASK; slot < (i_item + 1) * SLOTS_A_TASK && slot < search->tree.n_slots; slot++) {
     double normal[3], u[3], v[3];
     conic_vector_at(search->normal, (uint32_t)slot, normal);

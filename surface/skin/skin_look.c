@@ -89,9 +89,8 @@ static void look_at_slot(const look_pass *pass, uint32_t slot) {
   }
 }
 
-static void look_task(void *data, size_t i_item, int i_thread) {
+static void look_task(void *data, size_t i_item) {
   const look_pass *pass = data;
-  (void)i_thread;
   for (size_t i = i_item * SPLATS_A_TASK; i < (i_item + 1) * SPLATS_A_TASK && i < pass->search->tree.n_slots; i++)
     look_at_slot(pass, (uint32_t)i);
 }

@@ -37,12 +37,11 @@ static void part(regions_job *job, size_t begin, size_t end) {
   job->starts[job->n] = (uint32_t)end;
 }
 
-static void begin_task(void *data, size_t i_place, int i_thread) {
+static void begin_task(void *data, size_t i_place) {
   regions_job *job = data;
   conic_ways_job *ways = job->ways;
   work_place *place = &job->places[i_place];
   size_t i = job->first + i_place;
-  (void)i_thread;
   if (!place->simplifier)
     place->status = conic_simplifier_create(ways->context, ways->mesh, &ways->tree, &place->simplifier);
   if (place->status == CONIC_OK)
@@ -50,18 +49,16 @@ static void begin_task(void *data, size_t i_place, int i_thread) {
                                        job->levels + job->starts[i]);
 }
 
-static void advance_task(void *data, size_t i_place, int i_thread) {
+static void advance_task(void *data, size_t i_place) {
   work_place *place = &((regions_job *)data)->places[i_place];
-  (void)i_thread;
   place->n_clusters = 0;
   if (place->status == CONIC_OK)
     place->status = conic_region_advance(place->simplifier, &place->n_clusters);
 }
 
 /* Measures the i-th of all that are to be measured. */
-static void measure_task(void *data, size_t i, int i_thread) {
+static void measure_task(void *data, size_t i) {
   const work_place *place = ((regions_job *)data)->places;
-  (void)i_thread;
   for (; i >= place->n_clusters; place++)
     i -= place->n_clusters;
   conic_region_measure(place->simplifier, (uint32_t)i);
@@ -145,8 +142,7 @@ typedef struct whole_job {
   conic_simplifier *simplifier;
 } whole_job;
 
-static void measure_whole(void *data, size_t i, int i_thread) {
-  (void)i_thread;
+static void measure_whole(void *data, size_t i) {
   conic_region_measure(((whole_job *)data)->simplifier, (uint32_t)i);
 }
 

@@ -139,10 +139,9 @@ static void copy_triangles(const hybrid_selecting *s, const hybrid_choice *c, co
   conic_hybrid_stitch(&stitching);
 }
 
-static void copy_task(void *data, size_t i_task, int i_thread) {
+static void copy_task(void *data, size_t i_task) {
   const hybrid_selecting *s = data;
   size_t begin = s->first + i_task * CHOICES_A_TASK, end = begin + CHOICES_A_TASK;
-  (void)i_thread;
   for (size_t i = begin; i < end && i < s->end; i++) {
     const hybrid_choice *c = &s->scratch->choices[i];
     if (c->level == CONIC_HYBRID_POINT)

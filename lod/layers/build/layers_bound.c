@@ -267,7 +267,7 @@ static conic_layers_disc disc_in(const conic_layers_node *node, uint64_t key, co
 }
 
 /* How far the samples of a node below are from those chosen; or, once there are discs, what they are drawn as. */
-static void reach_below(void *data, size_t i_item, int i_thread) {
+static void reach_below(void *data, size_t i_item) {
   bounding *b = data;
   const conic_layers_node *below = b->below[i_item];
   const conic_layers_chosen chosen = {b->thinner, b->discs};
@@ -275,7 +275,6 @@ static void reach_below(void *data, size_t i_item, int i_thread) {
   conic_layers_facet facets[SOME_KEYS];
   conic_layers_disc discs[SOME_KEYS];
   double most = most_so_far(b);
-  (void)i_thread;
   for (size_t first = 0, n; first < below->n_drawn; first += n) {
     n = below->n_drawn - first < SOME_KEYS ? below->n_drawn - first : SOME_KEYS;
     conic_status status = conic_layers_fetch_keys(below, first, n, keys);
@@ -306,7 +305,7 @@ static double find_most(conic_context *context, int is_alone, bounding *b, doubl
   if (is_alone)
     conic_parallel_for(context, b->n_below, reach_below, b);
   for (size_t i = 0; i < b->n_below && !is_alone; i++)
-    reach_below(b, i, 0);
+    reach_below(b, i);
   return most_so_far(b);
 }
 

@@ -316,10 +316,9 @@ static void fill_piece(const gather *g, conic_layers_piece *piece) {
     }
 }
 
-static void piece_task(void *data, size_t i_task, int i_thread) {
+static void piece_task(void *data, size_t i_task) {
   const gather *g = data;
   size_t begin = i_task * PIECES_A_TASK, end = begin + PIECES_A_TASK;
-  (void)i_thread;
   for (size_t i = begin; i < end && i < g->set->n_pieces; i++)
     g->function(g, &g->set->pieces[i]);
 }

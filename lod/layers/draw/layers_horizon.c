@@ -46,10 +46,9 @@ static int lesser(int a, int b) {
   return a < b ? a : b;
 }
 
-static void update_row(void *data, size_t i_row, int i_thread) {
+static void update_row(void *data, size_t i_row) {
   conic_horizon *h = data;
   int y = (int)i_row << CELL_BITS, cell = 1 << CELL_BITS;
-  (void)i_thread;
   for (int i = 0; i < h->levels[0].width; i++)
     h->levels[0].cells[i_row * (size_t)h->levels[0].width + (size_t)i] =
         least_of(h->pixels, h->width, i * cell, lesser((i + 1) * cell, h->width), y, lesser(y + cell, h->height));

@@ -80,13 +80,12 @@ void conic_layers_spill_end(conic_layers_spill *spill) {
 /* --- putting aside --- */
 
 /* The pixels that a piece's splats may meet; none: an empty box. */
-static void find_boxes(void *data, size_t i_piece, int i_thread) {
+static void find_boxes(void *data, size_t i_piece) {
   const conic_layers_spill *spill = data;
   const conic_layers_piece *piece = &spill->set->pieces[i_piece];
   const conic_layers_place *place = &spill->cut->places[piece->i_place];
   const conic_splats *splats = &spill->set->splats;
   double radius = (double)spill->layers->entries[place->node].radius;
-  (void)i_thread;
   for (size_t i = piece->at; i < piece->at + piece->n_chosen; i++) {
     const float position[3] = {splats->position[0][i], splats->position[1][i], splats->position[2][i]};
     conic_window pixels = conic_layers_fine_pixels(place, spill->samples);
@@ -184,10 +183,9 @@ static conic_status end_spill_block(conic_layers_spill *spill, size_t i_window) 
   return conic_pile_append(&spill->pile, block, spill_block_bytes(spill), &heap->last_block);
 }
 
-static void put_aside(void *data, size_t i_window, int i_thread) {
+static void put_aside(void *data, size_t i_window) {
   conic_layers_spill *spill = data;
   conic_layers_heap *heap = &spill->heaps[i_window];
-  (void)i_thread;
   for (size_t i = spill->begin[i_window]; i < spill->begin[i_window + 1];) {
     size_t at = heap->count % spill->block_count, left = spill->begin[i_window + 1] - i;
     size_t n = spill->block_count - at < left ? spill->block_count - at : left;
