@@ -8,6 +8,7 @@
 #include "core/splats/near.h"
 #include "core/splats/repairs_log.h"
 #include "lod/mesh/mesh.h"
+#include "source/facing.h"
 #include "source/mesh_input.h"
 #include "source/moved_drawing.h"
 #include "source/source_kind.h"
@@ -21,8 +22,7 @@ typedef struct drawing_source {
   conic_repairs repairs; /* the sum over all inputs */
   size_t *ends;          /* of each input: where its splats, triangles, vertices and normals end */
   size_t n_inputs;       /* the vertices and the normals */
-  size_t n_dots;
-  conic_splats facing; /* the splats with dots turned to the camera; it has axes of its own if there are dots */
+  conic_facing facing;
   int has_moved;       /* something has moved, so that there is room for: */
   conic_splats moved;  /* the splats in their present places, with places and axes of its own */
   conic_triangles moved_triangles; /* the triangles in their present places, with places and normals of its own */
@@ -210,36 +210,15 @@ static conic_status dress(drawing_source *d, const conic_source_options *options
              : status;
 }
 
-/* Gives dots axes that can change from picture to picture. */
-static conic_status copy_axes(drawing_source *d) {
-  size_t n_bytes = d->splats.count * sizeof(float);
-  d->n_dots = conic_splats_count_dots(&d->splats);
-  if (!d->n_dots)
-    return CONIC_OK;
-  d->facing = d->splats;
-  for (int i = 0; i < 6; i++) {
-    float **axes = i < 3 ? &d->facing.tangent_u[i] : &d->facing.tangent_v[i - 3], *own = *axes;
-    *axes = conic_memory_allocate(d->base.context, d->splats.count, sizeof(float));
-    if (*axes)
-      memcpy(*axes, own, n_bytes);
-  }
-  for (int axis = 0; axis < 3; axis++)
-    if (!d->facing.tangent_u[axis] || !d->facing.tangent_v[axis])
-      return CONIC_ERROR_MEMORY;
-  return CONIC_OK;
-}
-
 static conic_status choose_in_drawing(conic_source *source, const conic_camera *camera,
                                       const conic_render_options *render, const conic_source_view *view) {
   drawing_source *d = (drawing_source *)source;
   (void)render, (void)view;
   const conic_splats *splats = source->is_moved ? &d->moved : &d->splats;
   const conic_triangles *triangles = source->is_moved ? &d->moved_triangles : &d->triangles;
-  source->choice.drawing = (conic_drawing){d->n_dots ? &d->facing : splats, triangles};
+  source->choice.drawing = (conic_drawing){splats, triangles};
   source->choice.is_all = 1;
-  memcpy(d->facing.position, splats->position, sizeof d->facing.position);
-  return d->n_dots ? conic_splats_face(source->context, splats, camera, d->facing.tangent_u, d->facing.tangent_v)
-                   : CONIC_OK;
+  return conic_facing_turn(source->context, &d->facing, camera, &source->choice.drawing.splats);
 }
 
 /* The range of all splats, vertices and normals that an input has. */
@@ -285,7 +264,7 @@ static conic_status move_drawing(conic_source *source, const conic_source_pose *
   if (poses)
     status = check_pose_shapes(d, poses);
   if (status == CONIC_OK && is_still && source->is_moved) /* what was kept of it belongs to another picture */
-    source->splats_version = d->is_lent || d->n_dots ? 0 : conic_context_next_version(source->context);
+    source->splats_version = d->is_lent || d->facing.n_dots ? 0 : conic_context_next_version(source->context);
   if (status != CONIC_OK || is_still) {
     source->is_moved &= status != CONIC_OK;
     return status;
@@ -304,7 +283,7 @@ static conic_status move_drawing(conic_source *source, const conic_source_pose *
                     &d->moved_triangles);
   }
   source->is_moved = 1;
-  source->splats_version = d->n_dots ? 0 : conic_context_next_version(source->context);
+  source->splats_version = d->facing.n_dots ? 0 : conic_context_next_version(source->context);
   conic_drawing_bounds(&moved, source->moved_minimum, source->moved_maximum);
   return CONIC_OK;
 }
@@ -323,8 +302,8 @@ static conic_status measure_drawing(drawing_source *d) {
   conic_status status =
       d->splats.count ? conic_splats_length(d->base.context, &d->splats, &scale->splat_length) : CONIC_OK;
   if (status == CONIC_OK)
-    status = copy_axes(d);
-  if (!d->is_lent && !d->n_dots)
+    status = conic_facing_begin(d->base.context, &d->splats, &d->facing);
+  if (!d->is_lent && !d->facing.n_dots)
     d->base.splats_version = conic_context_next_version(d->base.context);
   scale->estimate_seconds += conic_seconds_now() - start;
   return status;
@@ -425,8 +404,7 @@ conic_status conic_source_of_drawing(conic_context *context, conic_splats *splat
 
 static void close_drawing(conic_source *source) {
   drawing_source *d = (drawing_source *)source;
-  for (int axis = 0; axis < 3 && d->n_dots; axis++)
-    conic_memory_release_these(source->context, d->facing.tangent_u[axis], d->facing.tangent_v[axis]);
+  conic_facing_end(source->context, &d->facing);
   if (d->has_moved)
     conic_moved_end(source->context, &d->moved, &d->moved_triangles);
   if (!d->is_lent)
@@ -469,8 +447,8 @@ void conic_facts_add_repairs(conic_facts *facts, const conic_repairs *repairs) {
 
 static void tell_drawing_rest(const conic_source *source, conic_facts *facts) {
   const drawing_source *d = (const drawing_source *)source;
-  if (d->n_dots)
-    CONIC_ADD_FACTS(facts, CONIC_COUNT("dots", d->n_dots));
+  if (d->facing.n_dots)
+    CONIC_ADD_FACTS(facts, CONIC_COUNT("dots", d->facing.n_dots));
   conic_facts_add_repairs(facts, &d->repairs);
 }
 

@@ -2,6 +2,7 @@
 
 #include "core/base/context_struct.h"
 #include "core/base/trigonometry.h"
+#include "source/facing.h"
 #include "source/source_kind.h"
 
 typedef struct octree_source {
@@ -10,6 +11,7 @@ typedef struct octree_source {
   conic_octree_info info;
   conic_selection selection;
   conic_splats leaves; /* empty until all of them are needed */
+  conic_facing facing; /* those */
 } octree_source;
 
 static int takes_octree(const char *path, const conic_source_options *options) {
@@ -58,12 +60,24 @@ static conic_status draw_octree_boxes(conic_source *source, const conic_camera *
 static void close_octree(conic_source *source) {
   octree_source *o = (octree_source *)source;
   conic_selection_release(source->context, &o->selection);
+  conic_facing_end(source->context, &o->facing);
   conic_splats_release(source->context, &o->leaves);
   conic_octree_destroy(o->octree);
 }
 
 static conic_status need_leaves(octree_source *o) {
-  return o->leaves.count ? CONIC_OK : conic_octree_leaves(o->octree, &o->leaves);
+  if (o->leaves.count)
+    return CONIC_OK;
+  conic_status status = conic_octree_leaves(o->octree, &o->leaves);
+  if (status == CONIC_OK)
+    status = conic_facing_begin(o->base.context, &o->leaves, &o->facing);
+  if (o->facing.n_dots)
+    o->base.splats_version = 0;
+  if (status != CONIC_OK) {
+    conic_facing_end(o->base.context, &o->facing);
+    conic_splats_release(o->base.context, &o->leaves);
+  }
+  return status;
 }
 
 static conic_status find_octree_spacing(conic_source *source, double *spacing) {
@@ -95,9 +109,11 @@ static conic_status choose_from_octree(conic_source *source, const conic_camera 
   options.budget = view->budget;
   choice->is_all = view->error_px == 0.0 && view->budget == 0;
   choice->drawing.splats = choice->is_all ? &o->leaves : &o->selection.splats;
-  if (choice->is_all)
-    return need_leaves(o);
-  conic_status status = view->transparency ? settle_transparency(o) : CONIC_OK;
+  conic_status status = choice->is_all ? need_leaves(o) : CONIC_OK;
+  if (choice->is_all && status == CONIC_OK)
+    return conic_facing_turn(source->context, &o->facing, camera, &choice->drawing.splats);
+  if (view->transparency && status == CONIC_OK)
+    status = settle_transparency(o);
   if (status != CONIC_OK)
     return status;
   status = conic_octree_select(o->octree, camera, render, &options, &o->selection);

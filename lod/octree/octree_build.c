@@ -124,7 +124,9 @@ static conic_status gather_rest(conic_octree *octree) {
     for (int i = 0; i < 3 && status == CONIC_OK; i++)
       status = gather_floats(octree, arrays[i]);
   }
-  return status == CONIC_OK ? gather_floats(octree, &leaves->opacity) : status;
+  if (status == CONIC_OK)
+    status = gather_floats(octree, &leaves->opacity);
+  return status == CONIC_OK ? gather_floats(octree, &leaves->dot) : status;
 }
 
 /* The structure, and the splats in its order. */
@@ -357,6 +359,10 @@ conic_status conic_octree_build(conic_context *context, conic_splats *splats, co
   for (int axis = 0; axis < 3; axis++) { /* axes say it all */
     conic_memory_release(context, made->owned.normal[axis]);
     made->owned.normal[axis] = NULL;
+  }
+  if (!conic_splats_count_dots(&made->owned)) {
+    conic_memory_release(context, made->owned.dot);
+    made->owned.dot = NULL;
   }
   status = build_octree(made, &options);
   if (status == CONIC_OK)

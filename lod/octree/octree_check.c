@@ -41,6 +41,21 @@ static double farthest(const double c[2], const double a[2], const double b[2]) 
 
 enum { OUT_OF_ELLIPSE = 1, OUT_OF_SPHERE = 2, OUT_OF_CONE = 4, OUT_OF_ERROR = 8 };
 
+/* The same of a dot, a ball of this radius at p from the node's position; c is where that is in its ellipse. */
+static int check_dot(const conic_octree *octree, size_t i, double radius, const double c[2], const double p[3]) {
+  double n[3], v[3], cutoff = octree->scale.cutoff;
+  conic_vector_at(octree->normal, i, n);
+  vector_of(octree->drawn[i].tangent_v, v);
+  int broken = sqrt(c[0] * c[0] + c[1] * c[1]) + radius / conic_length(v) <= cutoff * (1.0 + hair) ? 0 : OUT_OF_ELLIPSE;
+  if (!(conic_length(p) + 2.0 * radius <= (double)octree->radius[i] * (1.0 + hair)))
+    broken |= OUT_OF_SPHERE;
+  if (!((double)octree->cone[i] <= hair))
+    broken |= OUT_OF_CONE;
+  if (!(fabs(conic_dot(p, n)) + radius <= (double)octree->error[i] * (1.0 + hair)))
+    broken |= OUT_OF_ERROR;
+  return broken;
+}
+
 /* Which bounds of node i leaf k breaks. Comparisons are such that what is not a number breaks them. */
 static int check_leaf(const conic_octree *octree, size_t i, size_t k) {
   const conic_splats *leaves = &octree->leaves;
@@ -73,7 +88,8 @@ static int check_leaf(const conic_octree *octree, size_t i, size_t k) {
   double uz = conic_dot(u, n), vz = conic_dot(v, n), height = fabs(conic_dot(p, n)) + cutoff * sqrt(uz * uz + vz * vz);
   if (!(height <= (double)octree->error[i] * (1.0 + hair)))
     broken |= OUT_OF_ERROR;
-  return broken;
+  double radius = conic_octree_dot_radius(octree, k);
+  return radius > 0.0 ? check_dot(octree, i, radius, c, p) : broken;
 }
 
 static void check_node(const conic_octree *octree, size_t i, conic_octree_defects *found) {

@@ -5,7 +5,14 @@
 
 enum { VERSION = 1 };
 
-enum { FLAG_QUANTIZED = 1, FLAG_COLOR_CODES = 2, FLAG_COLORS = 4, FLAG_OPACITIES = 8, ALL_FLAGS = 15 };
+enum {
+  FLAG_QUANTIZED = 1,
+  FLAG_COLOR_CODES = 2,
+  FLAG_COLORS = 4,
+  FLAG_OPACITIES = 8,
+  FLAG_DOTS = 16,
+  ALL_FLAGS = 31
+};
 
 /* The records of clip lines are in the file as they are in memory. */
 _Static_assert(sizeof(conic_clip) == 32, "clip records of 32 bytes");
@@ -49,6 +56,11 @@ static const conic_file_kind kind = {{'C', 'O', 'N', 'I', 'C', 'O', 'T', '\n'},
 /* Which array is which. */
 enum { ARRAY_CODES = 0, ARRAY_INDEX = 1, ARRAY_LEAVES = 2 };
 
+/* A bit for each leaf in the file. */
+static size_t dot_bytes(const conic_octree *h) {
+  return ((size_t)(h->flags & FLAG_QUANTIZED ? h->n_leaves : h->n_points) + 7) / 8;
+}
+
 /* Where everything is follows from the header alone; its counts are below 2³¹. */
 static conic_file_layout lay_out_file(const conic_octree *h) {
   conic_file_layout l = {.n_bytes = CONIC_FILE_HEADER_BYTES};
@@ -69,6 +81,8 @@ static conic_file_layout lay_out_file(const conic_octree *h) {
     if (h->flags & FLAG_OPACITIES)
       conic_file_add_array(&l, n_points * sizeof(float), "4");
   }
+  if (h->flags & FLAG_DOTS)
+    conic_file_add_array(&l, dot_bytes(h), "1");
   if (h->n_clips)
     conic_file_add_array(&l, (size_t)h->n_clips * sizeof(conic_clip), "422444444");
   return l;
@@ -79,7 +93,8 @@ static void describe_octree(conic_octree *octree) {
   const conic_splats *leaves = &octree->leaves;
   octree->version = VERSION;
   octree->flags = (octree->is_quantized ? FLAG_QUANTIZED : 0u) | (octree->has_color_codes ? FLAG_COLOR_CODES : 0u) |
-                  (leaves->color[0] ? FLAG_COLORS : 0u) | (leaves->opacity ? FLAG_OPACITIES : 0u);
+                  (leaves->color[0] ? FLAG_COLORS : 0u) | (leaves->opacity ? FLAG_OPACITIES : 0u) |
+                  (leaves->dot ? FLAG_DOTS : 0u);
   octree->cutoff = (float)octree->scale.cutoff;
 }
 
@@ -135,29 +150,50 @@ conic_status conic_octree_check_colors(conic_octree *octree) {
   return CONIC_OK;
 }
 
-/* What the arrays are filled from; colours as codes have been made into bytes. */
-static void list_sources(const conic_octree *octree, unsigned char *const color_codes[3],
-                         const void *sources[CONIC_FILE_MOST_ARRAYS]) {
+/* What is made into bytes for the file; null where the octree has none of it. */
+typedef struct file_codes {
+  unsigned char *color[3], *dots;
+} file_codes;
+
+/* Fills in the arrays of the leaves of a file that is not quantised. Returns how many there are. */
+static int list_leaf_sources(const conic_octree *octree, const file_codes *codes, const void **sources) {
   const conic_splats *leaves = &octree->leaves;
+  int n = 9;
+  for (int axis = 0; axis < 3; axis++) {
+    sources[axis] = leaves->position[axis];
+    sources[3 + axis] = leaves->tangent_u[axis];
+    sources[6 + axis] = leaves->tangent_v[axis];
+  }
+  for (int channel = 0; channel < 3 && leaves->color[0]; channel++)
+    sources[n++] = octree->has_color_codes ? (const void *)codes->color[channel] : leaves->color[channel];
+  if (leaves->opacity)
+    sources[n++] = leaves->opacity;
+  return n;
+}
+
+/* What the arrays are filled from. */
+static void list_sources(const conic_octree *octree, const file_codes *codes,
+                         const void *sources[CONIC_FILE_MOST_ARRAYS]) {
   int n = 0;
   sources[n++] = octree->codes;
   sources[n++] = octree->index;
-  if (octree->is_quantized) {
+  if (octree->is_quantized)
     sources[n++] = octree->leaf_codes;
-    sources[n] = octree->clips;
-    return;
-  }
-  for (int axis = 0; axis < 3; axis++) {
-    sources[n + axis] = leaves->position[axis];
-    sources[n + 3 + axis] = leaves->tangent_u[axis];
-    sources[n + 6 + axis] = leaves->tangent_v[axis];
-  }
-  n += 9;
-  for (int channel = 0; channel < 3 && leaves->color[0]; channel++)
-    sources[n++] = octree->has_color_codes ? (const void *)color_codes[channel] : leaves->color[channel];
-  if (leaves->opacity)
-    sources[n++] = leaves->opacity;
+  else
+    n += list_leaf_sources(octree, codes, sources + n);
+  if (codes->dots)
+    sources[n++] = codes->dots;
   sources[n] = octree->clips;
+}
+
+static conic_status encode_dots(const conic_octree *octree, unsigned char **bits) {
+  const float *dot = octree->leaves.dot;
+  if (!dot)
+    return CONIC_OK;
+  *bits = conic_memory_allocate_zeroed(octree->context, dot_bytes(octree), 1);
+  for (size_t i = 0; *bits && i < octree->leaves.count; i++)
+    (*bits)[i / 8] |= (unsigned char)((dot[i] != 0.0f) << i % 8);
+  return *bits ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
 
 static conic_status encode_colors(const conic_octree *octree, unsigned char *codes[3]) {
@@ -174,17 +210,18 @@ static conic_status encode_colors(const conic_octree *octree, unsigned char *cod
 
 conic_status conic_octree_write(conic_octree *octree, const char *path) {
   const void *sources[CONIC_FILE_MOST_ARRAYS];
-  unsigned char *color_codes[3] = {NULL, NULL, NULL};
+  file_codes codes = {.dots = NULL};
   describe_octree(octree);
-  conic_status status = encode_colors(octree, color_codes);
+  conic_status status = encode_colors(octree, codes.color);
+  if (status == CONIC_OK)
+    status = encode_dots(octree, &codes.dots);
   if (status == CONIC_OK) {
     conic_file_layout l = lay_out_file(octree);
-    list_sources(octree, color_codes, sources);
+    list_sources(octree, &codes, sources);
     octree->body_sum = conic_file_sum_arrays(octree->context, &l, sources);
     status = conic_file_write_arrays(octree->context, path, &kind, octree, &l, sources);
   }
-  for (int channel = 0; channel < 3; channel++)
-    conic_memory_release(octree->context, color_codes[channel]);
+  conic_memory_release_these(octree->context, codes.color[0], codes.color[1], codes.color[2], codes.dots);
   return status;
 }
 
@@ -259,6 +296,25 @@ static conic_status read_leaves(conic_octree *octree, const conic_file_layout *l
   return CONIC_OK;
 }
 
+/* Which leaves are dots, where any is. */
+static conic_status read_dots(conic_octree *octree, const char *path, const conic_file_layout *l) {
+  conic_splats *leaves = &octree->leaves;
+  if (!(octree->flags & FLAG_DOTS))
+    return CONIC_OK;
+  const int at = l->n - (octree->n_clips ? 2 : 1);
+  const unsigned char *bits = array_in_file(octree, l, at);
+  size_t n = leaves->count;
+  leaves->dot = octree->owned.dot = conic_memory_allocate(octree->context, n, sizeof *leaves->dot);
+  if (!leaves->dot)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < n; i++)
+    leaves->dot[i] = bits[i / 8] >> i % 8 & 1 ? 1.0f : 0.0f;
+  return n % 8 && bits[n / 8] >> n % 8
+             ? conic_fail(octree->context, CONIC_ERROR_INPUT, "%s: more dots than leaves (at byte %zu)", path,
+                          l->arrays[at].offset)
+             : CONIC_OK;
+}
+
 /* Every leaf is a splat of its own in the input. */
 static conic_status check_index(const conic_octree *octree, const char *path, const conic_file_layout *l) {
   conic_status status = CONIC_OK;
@@ -316,6 +372,8 @@ static conic_status read_octree_file(conic_octree *octree, const char *path) {
   octree->codes = array_in_file(octree, &l, ARRAY_CODES);
   octree->index = array_in_file(octree, &l, ARRAY_INDEX);
   status = read_leaves(octree, &l);
+  if (status == CONIC_OK)
+    status = read_dots(octree, path, &l);
   return status == CONIC_OK ? read_structure(octree, path, &l) : status;
 }
 

@@ -108,6 +108,26 @@ static conic_status scan_leaves(const fitter *f, size_t begin, size_t end, const
   return CONIC_OK;
 }
 
+/* Widens the reach by the dots among the leaves. A dot is a ball to its node, for it faces every camera, and it leans
+ * until it is twice as long in depth, which only the sphere has to hold. No cone of normals holds those of a dot: one of
+ * half a turn keeps its node from being culled, and from counting for less where it is seen from its side. */
+static void add_dots(const conic_octree *octree, size_t begin, size_t end, const conic_node_frame *frame,
+                     conic_leaf_reach *reach) {
+  const conic_splats *leaves = &octree->leaves;
+  for (size_t i = begin; i < end; i++) {
+    double p[3], radius = conic_octree_dot_radius(octree, i);
+    if (radius == 0.0)
+      continue;
+    conic_vector_at(leaves->position, i, p);
+    conic_subtract(p, frame->position, p);
+    double x = conic_dot(p, frame->u), y = conic_dot(p, frame->v), z = conic_dot(p, frame->n);
+    reach->reach = fmax(reach->reach, sqrt(x * x + y * y / (frame->ratio * frame->ratio)) + radius / frame->ratio);
+    reach->radius = fmax(reach->radius, conic_length(p) + 2.0 * radius);
+    reach->height = fmax(reach->height, fabs(z) + radius);
+    reach->cosine = fmin(reach->cosine, 0.0);
+  }
+}
+
 /* The mean normal, weighed by area; where normals cancel, the direction in which the points spread least. */
 static void find_moments_normal(const conic_moments *moments, double normal[3]) {
   double values[3], vectors[3][3];
@@ -165,6 +185,8 @@ static conic_status fit_node(const fitter *f, size_t i, const conic_moments *mom
     status = scan_leaves(f, begin, end, &frame, &reach);
   else
     f->loops.add_reach(&octree->leaves, begin, end, octree->scale.cutoff, &frame, &reach);
+  if (octree->leaves.dot)
+    add_dots(octree, begin, end, &frame, &reach);
   const double hair = 1.0 + 1e-6; /* axes and radii are floats when they are used */
   double major = reach.reach * hair, radius = (reach.radius > major ? reach.radius : major) * hair;
   conic_code_extent(&octree->scale, &major, &radius, code);

@@ -302,6 +302,8 @@ static void plain_put(const conic_octree *octree, const uint32_t *sources, size_
     }
     if (to->opacity)
       to->opacity[place + k] = from->opacity;
+    if (to->dot)
+      to->dot[place + k] = from->dot;
     ids[place + k] = from->id;
   }
 }

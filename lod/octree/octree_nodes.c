@@ -162,7 +162,9 @@ static void copy_chunk(void *data, size_t i_chunk) {
   const conic_splats *leaves = &octree->leaves;
   size_t begin = i_chunk * chunk_nodes, end = begin + chunk_nodes;
   for (size_t i = begin; i < end && i < octree->n_leaves; i++) {
-    conic_drawn_node drawn = {.opacity = leaves->opacity ? leaves->opacity[i] : 1.0f, .id = octree->index[i]};
+    conic_drawn_node drawn = {.opacity = leaves->opacity ? leaves->opacity[i] : 1.0f,
+                              .id = octree->index[i],
+                              .dot = leaves->dot ? leaves->dot[i] : 0.0f};
     for (int axis = 0; axis < 3; axis++) {
       drawn.position[axis] = leaves->position[axis][i];
       drawn.tangent_u[axis] = leaves->tangent_u[axis][i];
@@ -184,6 +186,15 @@ conic_status conic_octree_decode_all(conic_octree *octree) {
                                   octree->n_leaves * sizeof *octree->drawn_leaves);
   conic_parallel_for(octree->context, (octree->n_leaves + chunk_nodes - 1) / chunk_nodes, copy_chunk, octree);
   return CONIC_OK;
+}
+
+double conic_octree_dot_radius(const conic_octree *octree, size_t i_leaf) {
+  double u[3], v[3];
+  if (!octree->leaves.dot || octree->leaves.dot[i_leaf] == 0.0f)
+    return 0.0;
+  conic_vector_at(octree->leaves.tangent_u, i_leaf, u);
+  conic_vector_at(octree->leaves.tangent_v, i_leaf, v);
+  return octree->scale.cutoff * fmax(conic_length(u), conic_length(v));
 }
 
 /* Least, median, greatest. */
@@ -264,6 +275,8 @@ static void blank(conic_splats *splats, size_t i) {
   }
   if (splats->opacity)
     splats->opacity[i] = 0.0f;
+  if (splats->dot)
+    splats->dot[i] = 0.0f;
 }
 
 typedef struct leaf_copy {
@@ -287,6 +300,8 @@ static void copy_leaves(void *data, size_t i_chunk) {
     }
   for (size_t i = begin; i < end && from->opacity; i++)
     to->opacity[index[i]] = from->opacity[i];
+  for (size_t i = begin; i < end && from->dot; i++)
+    to->dot[index[i]] = from->dot[i];
 }
 
 conic_status conic_octree_leaves(const conic_octree *octree, conic_splats *splats) {

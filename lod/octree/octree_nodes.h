@@ -21,7 +21,8 @@ enum { CONIC_OCTREE_BLOCK = 1024 };
 typedef struct conic_drawn_node {
   float position[3], tangent_u[3], tangent_v[3], color[3], opacity;
   uint32_t id; /* of a leaf, its index in the input; of a node, n_points + its number */
-  float unused[2];
+  float dot;   /* 1 for a leaf that is turned to each camera */
+  float unused;
 } conic_drawn_node;
 
 /* Measuring goes by groups of so many nodes; their arrays have room for a last one. */
@@ -84,6 +85,9 @@ conic_status conic_octree_index_clips(conic_octree *octree);
 
 /* Leaves the clip lines of leaves that were rounded where they lay. */
 void conic_octree_move_clips(conic_octree *octree, const conic_splats *before, const conic_splats *after);
+
+/* How far the outline of a leaf that is a dot reaches on the screen, as a length in space; 0 where it is none. */
+double conic_octree_dot_radius(const conic_octree *octree, size_t i_leaf);
 
 /* The clip lines of leaf i, or null. */
 static inline const conic_clip *conic_octree_clip(const conic_octree *octree, size_t i_leaf) {

@@ -20,13 +20,15 @@ enum {
   AT_V = 6,
   AT_COLOR = 9,
   AT_OPACITY = 12,
-  AT_ID = 13
+  AT_ID = 13,
+  AT_DOT = 14
 };
 _Static_assert(offsetof(conic_drawn_node, tangent_u) == AT_U * sizeof(float) &&
                    offsetof(conic_drawn_node, tangent_v) == AT_V * sizeof(float) &&
                    offsetof(conic_drawn_node, color) == AT_COLOR * sizeof(float) &&
                    offsetof(conic_drawn_node, opacity) == AT_OPACITY * sizeof(float) &&
-                   offsetof(conic_drawn_node, id) == AT_ID * sizeof(float) && N_FIELDS == 16,
+                   offsetof(conic_drawn_node, id) == AT_ID * sizeof(float) &&
+                   offsetof(conic_drawn_node, dot) == AT_DOT * sizeof(float) && N_FIELDS == 16,
                "fields are where they are looked for");
 
 /* The fields of as many as a group holds. */
@@ -76,6 +78,8 @@ CONIC_INLINE void put_group(const group fields[N_FIELDS], size_t n, const conic_
     if (arrays[field])
       memcpy(arrays[field] + k, &fields[field], n * sizeof(float));
   memcpy(ids + k, &fields[AT_ID], n * sizeof *ids);
+  if (to->dot)
+    memcpy(to->dot + k, &fields[AT_DOT], n * sizeof(float));
 }
 
 static void put(const conic_octree *octree, const uint32_t *sources, size_t n, const float *eye, const conic_splats *to,

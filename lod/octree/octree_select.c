@@ -135,7 +135,7 @@ static void fill_task(void *data, size_t i_task) {
 /* One block for all arrays, each a few lines of the cache further on in its page than the one before: at the same place
  * in theirs, they would drive each other out of the cache. */
 static conic_status make_room_for_arrays(octree_selecting *s, size_t room) {
-  enum { PAGE = 1024, SHIFT = 64, N_ARRAYS = 14 }; /* floats */
+  enum { PAGE = 1024, SHIFT = 64, N_ARRAYS = 15 }; /* floats */
   conic_context *context = s->octree->context;
   conic_selection *selection = s->selection;
   conic_splats *splats = &selection->splats;
@@ -157,7 +157,9 @@ static conic_status make_room_for_arrays(octree_selecting *s, size_t room) {
       splats->color[axis] = arrays + stride * (size_t)n++;
   }
   splats->opacity = arrays + stride * (size_t)n++;
-  selection->ids = (uint32_t *)(arrays + stride * (size_t)n);
+  selection->ids = (uint32_t *)(arrays + stride * (size_t)n++);
+  if (s->octree->leaves.dot)
+    splats->dot = arrays + stride * (size_t)n;
   selection->room = room;
   return CONIC_OK;
 }
@@ -268,7 +270,12 @@ conic_status conic_octree_select(conic_octree *octree, const conic_camera *camer
   if (options.budget && octree->n_nodes)
     status = conic_octree_fit_budget(octree, &s.view, options.budget, &s.error_px);
   selection->error_px = options.budget ? (double)s.error_px : options.error_px;
-  return status == CONIC_OK ? select_splats(&s) : status;
+  if (status == CONIC_OK)
+    status = select_splats(&s);
+  const conic_splats *chosen = &selection->splats;
+  return status == CONIC_OK && chosen->dot && chosen->count
+             ? conic_splats_face(octree->context, chosen, camera, chosen->tangent_u, chosen->tangent_v)
+             : status;
 }
 
 void conic_selection_name(const conic_selection *selection, conic_image *image) {
