@@ -1,4 +1,7 @@
 /* Dots in a source: each picture sees them round, whichever way their axes lie and whatever was drawn before. */
+#include "conic/octree.h"
+#include "core/splats/columns.h"
+#include "tests/support/cloud_fixture.h"
 #include "tests/support/files.h"
 #include "tests/support/fixture.h"
 #include "tests/support/random_numbers.h"
@@ -26,13 +29,17 @@ static conic_source *make_source(fixture *f, int has_dots) {
   return source;
 }
 
-static uint64_t draw(fixture *f, conic_source *source, double azimuth_deg) {
+static void frame(fixture *f, conic_source *source, double azimuth_deg) {
   conic_framing framing;
   conic_framing_init(&framing);
   framing.width = framing.height = SIZE;
   framing.azimuth_deg = azimuth_deg;
   framing.elevation_deg = 0;
   CHECK_OK(conic_source_frame(source, &framing, &f->camera));
+}
+
+static uint64_t draw(fixture *f, conic_source *source, double azimuth_deg) {
+  frame(f, source, azimuth_deg);
   if (!f->image.width)
     CHECK_OK(conic_image_allocate(f->context, SIZE, SIZE, 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_ID, &f->image));
   CHECK_OK(conic_source_draw(source, f->renderer, &f->camera, &f->options, NULL, &f->image, &f->statistics));
@@ -108,10 +115,50 @@ static void check_files(fixture *f) {
   }
 }
 
+/* An octree draws the dots of its splats as they draw them themselves: all of them, or leaf by leaf. */
+static void check_octree(fixture *f) {
+  conic_splats cloud, copy = {0}, faced;
+  conic_octree *octree;
+  conic_source *source, *plain;
+  conic_source_view view;
+  conic_octree_options options;
+  size_t n_dots = 0;
+  conic_octree_options_init(&options);
+  cloud_fixture(f->context, 300, 200, 0, &cloud);
+  memcpy(copy.origin, cloud.origin, sizeof copy.origin);
+  CHECK_OK(conic_splats_append(f->context, &copy, &cloud));
+  CHECK_OK(conic_splats_allocate(f->context, cloud.count, CONIC_SPLATS_TANGENTS, &faced));
+  CHECK_OK(conic_octree_build(f->context, &copy, &options, &octree));
+  CHECK_OK(conic_source_of_octree(f->context, octree, &source));
+  conic_source_view_init(&view);
+  view.error_px = 1e-9;
+  for (int k = 0; k < 2; k++) {
+    frame(f, source, 70.0 * k);
+    CHECK_OK(conic_splats_face(f->context, &cloud, &f->camera, faced.tangent_u, faced.tangent_v));
+    CHECK_OK(conic_source_choose(source, &f->camera, &f->options, &view));
+    const conic_source_choice *choice = conic_source_chosen(source);
+    for (size_t i = 0; i < choice->drawing.splats->count; i++) {
+      uint32_t id = choice->ids[i];
+      CHECK(id < cloud.count);
+      for (int axis = 0; axis < 3 && cloud.dot[id] != 0.0f; axis++)
+        CHECK(choice->drawing.splats->tangent_v[axis][i] == faced.tangent_v[axis][id]);
+      n_dots += cloud.dot[id] != 0.0f;
+    }
+  }
+  CHECK(n_dots > 100);
+  CHECK_OK(conic_source_of_drawing(f->context, &cloud, NULL, &plain));
+  for (int k = 0; k < 3; k++)
+    CHECK(draw(f, source, 70.0 * k) == draw(f, plain, 70.0 * k));
+  conic_source_close(source);
+  conic_source_close(plain);
+  conic_splats_release(f->context, &faced);
+}
+
 int main(void) {
   fixture f = fixture_open(2);
   check_pictures(&f);
   check_files(&f);
+  check_octree(&f);
   fixture_close(&f);
   return check_result();
 }

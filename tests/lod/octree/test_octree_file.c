@@ -20,7 +20,7 @@ static bytes read_bytes(const char *path) {
   return b;
 }
 
-static void scene_splats(conic_context *context, size_t n, int with_opacity, conic_splats *splats) {
+static void scene_splats(conic_context *context, size_t n, int with_rest, conic_splats *splats) {
   conic_scene_options options;
   conic_scene *scene;
   conic_scene_options_init(&options);
@@ -28,19 +28,22 @@ static void scene_splats(conic_context *context, size_t n, int with_opacity, con
   options.count = n;
   options.offset[1] = 1e6;
   CHECK_OK(conic_splats_allocate(
-      context, n, CONIC_SPLATS_TANGENTS | CONIC_SPLATS_COLORS | (with_opacity ? (unsigned)CONIC_SPLATS_OPACITIES : 0u),
+      context, n,
+      CONIC_SPLATS_TANGENTS | CONIC_SPLATS_COLORS | (with_rest ? CONIC_SPLATS_OPACITIES | CONIC_SPLATS_DOTS : 0u),
       splats));
   CHECK_OK(conic_scene_create(context, &options, &scene));
   CHECK_OK(conic_scene_sample(scene, 0, n, splats));
   conic_scene_destroy(scene);
-  for (size_t i = 0; i < n && with_opacity; i++)
+  for (size_t i = 0; i < n && with_rest; i++) {
     splats->opacity[i] = 0.25f + 0.5f * (float)i / (float)n;
+    splats->dot[i] = i % 7 == 0;
+  }
 }
 
-static bytes make_file(conic_context *context, size_t n, int quantize, int with_opacity) {
+static bytes make_file(conic_context *context, size_t n, int quantize, int with_rest) {
   const char *path = files_path("made.cot");
   conic_splats splats;
-  scene_splats(context, n, with_opacity, &splats);
+  scene_splats(context, n, with_rest, &splats);
   conic_octree *octree = octree_build(context, &splats, quantize);
   conic_octree_info info;
   CHECK_OK(conic_octree_write(octree, path));
@@ -64,7 +67,9 @@ static bytes make_file(conic_context *context, size_t n, int quantize, int with_
     CHECK(memcmp(back->leaves.color[axis], octree->leaves.color[axis], n_bytes) == 0);
     CHECK(back->leaves.origin[axis] == octree->leaves.origin[axis]);
   }
-  CHECK(!with_opacity == !back->leaves.opacity);
+  CHECK(!with_rest == !back->leaves.opacity && !with_rest == !back->leaves.dot);
+  for (size_t i = 0; i < octree->leaves.count && with_rest; i++)
+    CHECK(back->leaves.dot[i] == splats.dot[octree->index[i]]);
   octree_check_sound(back);
   conic_octree_destroy(back);
   conic_octree_destroy(octree);
