@@ -101,6 +101,7 @@ static int run_octree(cli_session *session, int argc, char **argv) {
   static const cli_build_steps steps = {make_octree, tell_octree, report_octree, release_octree};
   octree_job job = {.base = {session, .stages = {{"read"}, {"estimate"}, {"work"}, {"write"}}}};
   conic_estimate_options_init(&job.estimate);
+  job.estimate.finds_dots = 1;
   conic_octree_options_init(&job.options);
   cli_coloring_init(&job.coloring);
   job.cutoff = (double)job.options.cutoff;

@@ -150,7 +150,7 @@ static int check_layer_arguments(cli_layer_job *job) {
     return cli_usage("layer: --append adds to a file as it was built: not with --quantum, --payload or --keep");
   if (job->is_appending)
     job->base.session->replaced_path = job->base.output;
-  job->options.keeps_all = job->estimate.finds_dots = job->payload == FULL;
+  job->options.keeps_all = job->payload == FULL;
   if (job->payload == FULL && !job->is_quantum_given)
     job->quantum = (cli_length){1.0 / 4096.0, 1};
   job->options.cloud_size = (uint32_t)job->cloud_size;
@@ -175,6 +175,7 @@ static int run_layer(cli_session *session, int argc, char **argv) {
                        .quantum = {0.5, 1}};
   const char *positional[argc];
   conic_estimate_options_init(&job.estimate);
+  job.estimate.finds_dots = 1;
   conic_layers_options_init(&job.options);
   cli_coloring_init(&job.coloring);
   job.coloring.keeps_up = 1;
@@ -193,8 +194,8 @@ static int run_layer(cli_session *session, int argc, char **argv) {
        "neighbours that raw points' normals are estimated from, 6 to 64 [20]", 6, 64,
        .acts = {.on = CLI_FACT(RAW), .is_warned = 1}},
       {"payload", CLI_CHOICE, &job.payload, "WHAT",
-       "what of a splat is kept: plain, its place, size, direction and colour; or full, also ellipses, opacities, dots "
-       "and clip lines, and all of it finely [plain]",
+       "what of a splat is kept: plain, its place, size, direction and colour, and that it is a dot; or full, also "
+       "ellipses, opacities and clip lines, and all of it finely [plain]",
        .choices = payload_words},
       {"keep", CLI_TEXT, &job.keep, "NAMES",
        "which values of the points are kept, for --color-by and --where: intensity,gps_time or all [none]",

@@ -68,11 +68,29 @@ done
 [[ $(value up_basis up.json) == kind && $(value up_basis ups.json) == kind ]] || fail "what points up is not kept"
 grep -A1 '"up"' ups.json | tr -d ' \n' | grep -q '"up":\[-1,0,0\]' || fail "something else points up: $(cat ups.json)"
 [[ $(value up_basis other.json) == kind ]] && fail "what points up is of one input only"
-# What lies on no surface is dots, as in prepare, where all of a splat is kept.
+# What lies on no surface is dots, as in prepare. They are drawn as the cloud's, and are still there in what is made of
+# the file.
 awk 'BEGIN { srand(1); for (i = 0; i < 400; i++) print rand(), rand(), rand() }' > dust.xyz
-run 0 layer dust.xyz -o dust.lpc --payload full
-is_sound dust.lpc
-awk -v more="$(value more info.json)" 'BEGIN { exit !(more > 0) }' || fail "dots are not kept"
+run 0 prepare dust.xyz -o dust.ply
+count_dots() { # FILE JSON: the dots in the splats of a file
+  run 0 cut "$1" -o cut.ply
+  run 0 render cut.ply -o dots.pfm --size 16x16 --json "$2"
+  value dots "$2"
+}
+n_dots=$(count_dots dust.ply dots.json)
+[[ $n_dots -gt 300 ]] || fail "prepare finds $n_dots dots"
+for payload in plain full; do
+  run 0 layer dust.xyz -o dust.lpc --payload $payload
+  is_sound dust.lpc
+  run 0 layer dust.ply -o ready.lpc --payload $payload
+  cmp -s dust.lpc ready.lpc || fail "$payload: prepared points make another file"
+  run 0 layer raw.xyz -o both.lpc --payload $payload
+  run 0 layer dust.ply -o both.lpc --append
+  run 0 merge dust.lpc dust.lpc -o twice.lpc
+  [[ $(count_dots dust.lpc dots.json) == "$n_dots" ]] || fail "$payload: dots are not kept"
+  [[ $(count_dots both.lpc dots.json) == $((n_dots + 9)) ]] || fail "$payload: dots are not appended"
+  [[ $(count_dots twice.lpc dots.json) == $((2 * n_dots)) ]] || fail "$payload: dots are not merged"
+done
 run 0 make torus -n 5k --far 500000,4000000,100 -o far.ply
 run 0 layer far.ply -o far.lpc
 is_sound far.lpc

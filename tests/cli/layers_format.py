@@ -269,9 +269,12 @@ def main():
         expect(payload + " colour", s["color"], made["color"][i], 0)
         expect(payload + " time", s["time"], made["time"][i], 0)
         expect(payload + " depth", s["depth"], made["depth"][i], 0)
+        expect(payload + " dot", s["dot"], made["dot"][i], 0)
         lengths = [np.linalg.norm(made[c], axis=1)[i] for c in "uv"]
         if payload == "plain":
-            longer, drawn = np.maximum(*lengths), np.prod(lengths, 0) * share_left(made["lines"], 1.5)[i]
+            longer = np.maximum(*lengths)
+            shorter = np.where(made["dot"][i], longer, np.minimum(*lengths))
+            drawn = longer * shorter * share_left(made["lines"], 1.5)[i]
             outline = 1.5 * (2 * longer + np.sqrt(drawn)) / 3
             expect("size", s["size"] / outline, 1, file["table"]["size"]["error"] + 0.04)
             check_nodes(file, s["size"])
@@ -279,7 +282,6 @@ def main():
         for k, c in enumerate("uv"):
             expect("axis", (s[c] - made[c][i]) / lengths[k][:, None], 0, 2e-4)
         expect("opacity", s["opacity"], made["opacity"][i], 1e-5)
-        expect("dot", s["dot"], made["dot"][i], 0)
         for k, (kind, directions_, offsets) in zip(i, s["lines"]):
             lines = np.array(made["lines"][k]).reshape(-1, 3)
             if kind != len(lines):

@@ -45,6 +45,24 @@ cmp -s ply.pfm cot.pfm || fail "the .cot draws another picture"
   fail "the planes of the .cot differ from those of its splats"
 [[ $(value near ply.json) == "$(value near cot.json)" ]] || fail "near differs"
 
+# That holds for dots, too, which face each picture's camera, also of a file that is made from the raw points.
+awk 'BEGIN { srand(2); for (i = 0; i < 900; i++) print rand(), rand(), rand() }' > dust.xyz
+run 0 prepare dust.xyz -o dust.ply
+run 0 octree dust.ply -o dust.cot
+run 0 octree dust.xyz -o raw.cot
+cmp -s dust.cot raw.cot || fail "raw points make another octree"
+for view in "--azimuth 20" "--azimuth 100 --elevation 60"; do
+  run 0 render dust.ply -o dust.pfm $picture $view --json ply.json
+  run 0 render dust.cot -o dust.pfm $picture $view --json cot.json
+  [[ -n $(hashes ply.json) && $(hashes ply.json) == "$(hashes cot.json)" ]] || fail "$view: dots are drawn otherwise"
+done
+run 0 render knot.ply -o ply.pfm $picture --json ply.json
+run 0 octree dust.ply -o dust.cot --quantize
+for file in dust.cot raw.cot; do
+  run 0 info $file --check --json info.json
+  [[ $(value sound info.json) == true ]] || fail "$file: dots are not within their nodes"
+done
+
 # Fewer for more error; never more than the budget; threads change nothing.
 last=0
 for error in 8 2 0.5; do

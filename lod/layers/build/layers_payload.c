@@ -5,6 +5,11 @@
 /* How many of a length's 23 bits of fraction are kept. */
 enum { AXES_KEPT = 12, MOST_OF_SIZE = 4, FRACTION_BITS = 23 };
 
+static void add_dots(conic_layers_payload *p) {
+  if (conic_layers_schema_add(&p->schema, CONIC_LAYERS_DOT, "dot", 0))
+    p->dot = (int)p->schema.n - 1;
+}
+
 static conic_status add_values(conic_layers_payload *p, const conic_point_values *values) {
   for (size_t k = 0; values && k < values->n; k++) {
     const conic_model_field *field = &values->field[k];
@@ -40,10 +45,12 @@ conic_status conic_layers_payload_begin(conic_context *context, const conic_spla
     conic_layers_schema_add(schema, CONIC_LAYERS_OPACITY, "opacity", 0);
     payload->clip = (int)schema->n;
     conic_layers_schema_add(schema, CONIC_LAYERS_CLIP, "clip", 0);
-    payload->dot = (int)schema->n;
-    conic_layers_schema_add(schema, CONIC_LAYERS_DOT, "dot", 0);
+    add_dots(payload);
   }
-  return add_values(payload, batch->values);
+  conic_status status = add_values(payload, batch->values);
+  if (!is_full) /* last in a record, so that records are shorter where there are none */
+    add_dots(payload);
+  return status;
 }
 
 void conic_layers_payload_end(conic_layers_payload *payload) {
@@ -128,12 +135,14 @@ void conic_layers_payload_take(conic_layers_payload *payload, const conic_splats
     opacity = opacity > 0.0f ? opacity < 1.0f ? opacity : 1.0f : 0.0f;
     unsigned code = (unsigned)(opacity * 65535.0f + 0.5f);
     const unsigned char bytes[2] = {(unsigned char)code, (unsigned char)(code >> 8)};
-    uint8_t dot = batch->dot && batch->dot[i] != 0.0f;
     take_ellipse(payload, batch, i, extra);
     take_clip_lines(payload, batch, i, extra);
     payload->facts.n_translucent += code != 65535;
-    payload->facts.n_dots += dot;
     memcpy(bytes_in_record(payload, (uint32_t)payload->opacity, extra), bytes, sizeof bytes);
+  }
+  if (payload->dot) {
+    uint8_t dot = batch->dot && batch->dot[i] != 0.0f;
+    payload->facts.n_dots += dot;
     memcpy(bytes_in_record(payload, (uint32_t)payload->dot, extra), &dot, sizeof dot);
   }
   take_named_values(payload, i, extra);
@@ -178,9 +187,12 @@ void conic_layers_payload_settle(conic_layers_payload *payload, double spacing) 
       settle_sizes(low, high, &schema->list[i]);
     else if (schema->list[i].kind == CONIC_LAYERS_AXES)
       settle_axes(low, high, payload->cutoff, &schema->list[i]);
-  if (payload->axes) { /* from the last to the first, so that numbers stay */
-    if (!facts->n_dots)
-      conic_layers_schema_drop(schema, (uint32_t)payload->dot);
+  if (payload->dot && !facts->n_dots) { /* from the last to the first, so that numbers stay */
+    conic_layers_schema_drop(schema, (uint32_t)payload->dot);
+    schema->extra_bytes -= payload->axes ? 0 : 1;
+    schema->sample_bytes = (uint32_t)conic_layers_stride(schema->extra_bytes);
+  }
+  if (payload->axes) {
     if (!facts->n_clips)
       conic_layers_schema_drop(schema, (uint32_t)payload->clip);
     if (!facts->n_translucent)

@@ -18,8 +18,7 @@ void conic_layers_raws_begin(conic_context *context, const char *path, size_t me
 
 conic_status conic_layers_raws_start(conic_layers_raws *raws, const conic_splats *batch) {
   conic_status status = conic_layers_payload_begin(raws->context, batch, raws->is_full, raws->cutoff, &raws->payload);
-  raws->extra_bytes = raws->payload.schema.extra_bytes;
-  raws->raw_bytes = (sizeof(conic_layers_raw) + raws->extra_bytes + 7) / 8 * 8;
+  raws->raw_bytes = (sizeof(conic_layers_raw) + raws->payload.schema.extra_bytes + 7) / 8 * 8;
   raws->pending = conic_memory_allocate(raws->context, CONIC_LAYERS_BLOCK, raws->raw_bytes);
   raws->has_started = 1;
   raws->has_colors = batch->color[0] != NULL;
@@ -86,8 +85,10 @@ static int take_axes(conic_layers_raws *raws, const conic_splats *batch, size_t 
   if (!is_direction(rounded))
     return 0;
   conic_layers_code_normal(normal, raw->normal);
-  float outline = outline_of(raws, length_a > length_b ? length_a : length_b, length_a > length_b ? length_b : length_a,
-                             conic_layers_payload_clip(&raws->payload, batch, i));
+  double longer = fmax(length_a, length_b), shorter = fmin(length_a, length_b);
+  if (batch->dot && batch->dot[i] != 0.0f) /* it is drawn as a circle */
+    shorter = longer;
+  float outline = outline_of(raws, longer, shorter, conic_layers_payload_clip(&raws->payload, batch, i));
   raw->size = conic_layers_code_size(outline);
   conic_layers_facts *facts = &raws->payload.facts;
   if (raw->size && !raws->is_full) {
@@ -282,7 +283,7 @@ static conic_status place_raws(void *data, const conic_layers_block *block, cons
     *p->sample = (conic_layers_sample){.normal = {raw->normal[0], raw->normal[1]},
                                        .size = raw->size,
                                        .color = {raw->color[0], raw->color[1], raw->color[2]}};
-    memcpy(p->sample + 1, raw + 1, from->extra_bytes);
+    memcpy(p->sample + 1, raw + 1, from->payload.schema.extra_bytes);
     place_sample(p->grid, block, raw, p->sample);
     if (p->grid->kept->n == 0 || !conic_layers_kept_find(p->grid->kept, p->sample->key))
       status = p->take(p->to, p->sample);

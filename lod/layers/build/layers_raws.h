@@ -84,9 +84,9 @@ typedef struct conic_layers_raws {
   conic_code_scale scale; /* for the colours' codes */
   float cutoff;
   int is_full;
-  conic_layers_payload payload;  /* with the facts of all samples */
-  size_t extra_bytes, raw_bytes; /* that follow each sample, and from one sample to the next */
-  unsigned char *pending;        /* a block's */
+  conic_layers_payload payload; /* with the facts of all samples */
+  size_t raw_bytes;             /* from one sample to the next */
+  unsigned char *pending;       /* a block's */
   int has_started, has_colors;
   double some[CONIC_LAYERS_SOME][3]; /* the position of every stride-th sample */
   uint64_t stride;

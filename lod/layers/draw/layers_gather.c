@@ -103,8 +103,12 @@ static sieve begin_sieve(const gather *g, const conic_layers_piece *piece, const
                  .turned = turned && turned->is_any && cloud->facing ? turned : NULL};
 }
 
+static inline int is_dot(const conic_layers_cloud *cloud, size_t i) {
+  return cloud->dot && cloud->dot[i] != 0.0f;
+}
+
 static inline int is_turned(const sieve *s, size_t i) {
-  return s->turned && conic_layers_is_turned(s->turned, s->cloud->facing[i]);
+  return s->turned && conic_layers_is_turned(s->turned, s->cloud->facing[i]) && !is_dot(s->cloud, i);
 }
 
 /* Whether a splat is one of those asked for and passes the filter; and, of a place that is hidden otherwise, may be
@@ -115,7 +119,7 @@ static inline int is_chosen(const sieve *s, size_t i) {
     return 0;
   if (s->cloud->is_left_out && s->cloud->is_left_out[i])
     return 0;
-  if (s->place->state != CONIC_PLACE_GRAZING || !s->view || (s->cloud->dot && s->cloud->dot[i] != 0.0f))
+  if (s->place->state != CONIC_PLACE_GRAZING || !s->view || is_dot(s->cloud, i))
     return 1;
   for (int axis = 0; axis < 3; axis++)
     along += (double)s->cloud->normal[axis][i] * ((double)s->cloud->position[axis][i] - s->view->from.eye[axis]);
@@ -248,10 +252,14 @@ static void copy_values(const gather *g, const conic_layers_cloud *cloud, size_t
     g->set->named->value[v][k] = cloud->values[v * cloud->count + i_cloud];
 }
 
+static int has_payload(const conic_layers_cloud *cloud) {
+  return cloud->axis[0] || cloud->dot;
+}
+
 /* What else a splat has. At full resolution it is drawn as it came, in coarser places as a circle without lines. */
 static void copy_payload(const splat_copying *c, size_t i_cloud, size_t k) {
   const conic_layers_cloud *cloud = c->cloud;
-  int is_full = c->entry->child == 0;
+  int is_full = c->entry->child == 0 && cloud->axis[0];
   for (int axis = 0; axis < 3 && is_full; axis++) {
     c->to_u[axis][k] = c->growth * cloud->axis[axis][i_cloud];
     c->to_v[axis][k] = c->growth * cloud->axis[3 + axis][i_cloud];
@@ -299,7 +307,7 @@ static void fill_piece(const gather *g, conic_layers_piece *piece) {
   splat_copying c = begin_copy(g, piece);
   if (piece->n_chosen == n) {
     copy_all(&c, n, first_id);
-    for (size_t i = 0; i < n && cloud->axis[0]; i++)
+    for (size_t i = 0; i < n && has_payload(cloud); i++)
       copy_payload(&c, piece->first + i, i);
     for (size_t i = 0; i < n && g->set->named; i++)
       copy_values(g, cloud, piece->first + i, piece->at + i);
@@ -309,7 +317,7 @@ static void fill_piece(const gather *g, conic_layers_piece *piece) {
   for (size_t i = 0; i < n && k < piece->n_chosen; i++)
     if (!is_turned(&s, piece->first + i) && is_chosen(&s, piece->first + i) && !is_elsewhere(&s, piece->first + i)) {
       copy_one(&c, i, k, first_id + (uint32_t)i);
-      if (cloud->axis[0])
+      if (has_payload(cloud))
         copy_payload(&c, piece->first + i, k);
       copy_values(g, cloud, piece->first + i, piece->at + k);
       k++;
