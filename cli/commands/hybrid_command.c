@@ -56,6 +56,16 @@ static conic_status build_within(hybrid_job *job) {
                             : status;
 }
 
+/* Why the model as built has more primitives than came in; null where it has not. */
+static const char *why_more(const hybrid_job *job) {
+  const uint64_t n_points = job->report.n_points, n_in = n_points ? n_points : job->report.n_faces;
+  if (job->info.n_triangles + job->info.n_surfels <= n_in)
+    return NULL;
+  return n_points ? "a surface has two triangles for each of its points; --error draws fewer"
+                  : "surfels lie closer than vertices do where the mesh bends; --only triangles draws none of them and "
+                    "--error fewer of both";
+}
+
 static int make_hybrid(void *cookie) {
   hybrid_job *job = cookie;
   cli_stage *stages = job->base.stages;
@@ -74,6 +84,8 @@ static int make_hybrid(void *cookie) {
   if (status == CONIC_OK)
     status = conic_hybrid_write(job->hybrid, job->base.output);
   cli_build_end_stage(&stages[WRITE], start);
+  if (status == CONIC_OK && why_more(job))
+    cli_note(job->base.session, "%s: more primitives as built than came in: %s", job->base.input, why_more(job));
   return cli_exit_of(status);
 }
 
@@ -87,6 +99,8 @@ static void write_counts(cli_json *json, const hybrid_job *job) {
                   {"clusters", job->info.n_clusters}, {"surfel_clusters", job->info.n_surfel_clusters},
                   {"clusters_phase1", r->n_first}, {"levels", job->info.n_levels},
                   {"node_levels", job->info.n_node_levels}, {"pieces", r->n_pieces}, {"bytes", job->info.n_bytes});
+  if (why_more(job))
+    cli_json_text(json, "why_more", why_more(job));
 }
 
 /* Writes what keeps the mesh from being a closed surface. */

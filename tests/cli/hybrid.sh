@@ -17,6 +17,12 @@ hashes() { # FILE
 run 0 hybrid hill.obj --crease 0 -o hill.chy --json made.json # as --plain has it
 [[ $(value triangles_in made.json) == 7200 && $(value bytes made.json) == $(stat -c %s hill.chy) ]] || fail "counts"
 [[ $(value triangles made.json) -gt 0 && $(value surfels made.json) -gt 0 ]] || fail "not both kinds"
+# More than came in is explained, and nothing else.
+run 0 hybrid hill.obj --density 8 --most-error 9 -o more.chy --json more.json
+[[ $(($(value triangles more.json) + $(value surfels more.json))) -gt 7200 ]] || fail "not more than the mesh"
+grep -q "more primitives as built than came in: surfels" err && [[ -n $(value why_more more.json) ]] || fail "more, and no reason"
+run 0 hybrid hill.obj --phase2 -2 -o same.chy --json same.json
+[[ $(value triangles same.json) == 7200 && -z $(value why_more same.json) ]] || fail "a reason for what is not so"
 [[ $(value open_edges made.json) == 240 && $(value nan made.json) == 0 ]] || fail "oddities of an open sheet"
 run 0 hybrid hill.obj --crease 0 -o one.chy --threads 1
 cmp -s one.chy hill.chy || fail "threads change the file"
@@ -44,6 +50,7 @@ run 3 hybrid hill.obj --memory 200 -o x.chy
   sed -n 's/^v //p' hill.obj; } > cloud.ply
 run 0 hybrid cloud.ply -o scan.chy --json scan.json
 [[ $(value points_in scan.json) == 3721 && $(value splats_kept scan.json) -lt 600 ]] || fail "points: $(cat scan.json)"
+[[ $(value why_more scan.json) == "a surface has two triangles"* ]] || fail "more than the points, and no reason"
 [[ $(value triangles_in scan.json) -gt 6500 ]] || fail "few triangles of points"
 run 0 info scan.chy --check
 run 0 render scan.chy -o a.pfm --size 160x120 --error 1 --json file.json
