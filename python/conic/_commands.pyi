@@ -1016,8 +1016,8 @@ def layers(
         --payload full]
     cutoff: the --cutoff of the pictures to come [1.5]
     k: neighbours that raw points' normals are estimated from, 6 to 64 [20]
-    payload: what of a splat is kept: plain, its place, size, direction and colour; or full, also ellipses,
-        opacities, dots and clip lines, and all of it finely [plain]
+    payload: what of a splat is kept: plain, its place, size, direction and colour, and that it is a dot; or
+        full, also ellipses, opacities and clip lines, and all of it finely [plain]
     keep: which values of the points are kept, for --color-by and --where: intensity,gps_time or all [none]
     append: add to the OUT.lpc that there is; its samples stay where they are
     resumable: note in OUT.branches what is finished, so that --resume can go on after any end
