@@ -59,7 +59,7 @@ static conic_status share_loops(conic_context *context, loops *l, int is_leaving
                                  0.5,
                                  ITEMS,
                                  16,
-                                 make_values,
+                                 CONIC_TASK(make_values),
                                  l,
                                  .n_an_item = AN_ITEM,
                                  .n_values = VALUES,
@@ -68,7 +68,7 @@ static conic_status share_loops(conic_context *context, loops *l, int is_leaving
                                              {l->moved, sizeof *l->moved, l->places},
                                              {l->by_item, sizeof *l->by_item, .is_by_item = 1}}};
   const conic_team_loop second = {
-      "second", 0.5, 1.0, ITEMS, 0, make_uneven, l, .first_of = first_uneven, .columns = {{l->uneven, 1}}};
+      "second", 0.5, 1.0, ITEMS, 0, CONIC_TASK(make_uneven), l, .first_of = first_uneven, .columns = {{l->uneven, 1}}};
   conic_status status = conic_team_runs(context, &first);
   if (status == CONIC_OK && is_leaving)
     return CONIC_ERROR_IO;
