@@ -42,8 +42,6 @@ const char *cli_bench_scene_at(int i, const char **about);
 conic_status cli_bench_camera_read(cli_session *session, const char *path, const char *view, conic_camera *camera);
 /* Turns a camera about the scene's centre and what points up, by so many turns. */
 void cli_bench_scene_turn(const cli_bench_scene *scene, double turns, conic_camera *camera);
-/* The same view in another size: what the shorter side showed it shows again. */
-void cli_bench_camera_resize(conic_camera *camera, int width, int height);
 /* The camera that it is seen by, brought to the size. */
 conic_status cli_bench_scene_camera(const cli_bench_scene *scene, int width, int height, conic_camera *camera);
 

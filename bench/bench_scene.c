@@ -271,7 +271,8 @@ static void build_in(conic_camera *camera) {
   memcpy(camera->cam_from_world, cam_from_world, sizeof cam_from_world);
 }
 
-void cli_bench_camera_resize(conic_camera *camera, int width, int height) {
+/* The same view in another size: what the shorter side showed it shows again. */
+static void bench_camera_resize(conic_camera *camera, int width, int height) {
   int shorter = width < height ? width : height;
   double factor = (double)shorter / (double)(camera->width < camera->height ? camera->width : camera->height);
   camera->cx = 0.5 * (double)width + factor * (camera->cx - 0.5 * (double)camera->width);
@@ -305,6 +306,6 @@ conic_status cli_bench_scene_camera(const cli_bench_scene *scene, int width, int
   for (int row = 0; row < 3 && scene->is_gaussian && !scene->has_camera; row++)
     for (int axis = 1; axis < 3; axis++) /* what is made has y down */
       camera->cam_from_world[row][axis] = -camera->cam_from_world[row][axis];
-  cli_bench_camera_resize(camera, width, height);
+  bench_camera_resize(camera, width, height);
   return CONIC_OK;
 }

@@ -246,16 +246,11 @@ static conic_status time_point(axis_job *job, int i, int repeat) {
   return compare_point(job, point);
 }
 
-static int by_length(const void *a, const void *b) {
-  const double first = *(const double *)a, second = *(const double *)b;
-  return (first > second) - (first < second);
-}
-
 static void settle_times(const axis_job *job) {
   for (int i = 0; i < job->n_ways; i++) {
     axis_way *way = &job->points[i];
     cli_axis_point *point = &job->chart->points[i];
-    qsort(way->seconds, (size_t)way->n_frames, sizeof way->seconds[0], by_length);
+    qsort(way->seconds, (size_t)way->n_frames, sizeof way->seconds[0], conic_compare_doubles);
     point->ms = 1e3 * way->seconds[0];
     point->spread = way->seconds[way->n_frames / 4] / way->seconds[0] - 1.0;
   }

@@ -208,7 +208,8 @@ static void end_stroke(FILE *to, const cli_plot_style *style) {
           style->is_dashed ? " stroke-dasharray=\"5 4\"" : "");
 }
 
-void cli_plot_line(cli_plot *plot, const cli_plot_style *style, int n, const double *x, const double *y) {
+/* A line through points that lie inside the axes. */
+static void plot_line(cli_plot *plot, const cli_plot_style *style, int n, const double *x, const double *y) {
   int n_drawn = 0;
   for (int i = 0; i < n; i++)
     if (is_on_axis(&plot->x, x[i]) && is_on_axis(&plot->y, y[i])) {
@@ -237,18 +238,7 @@ void cli_plot_front(cli_plot *plot, const cli_plot_style *style, int n, double (
     x[n_corners] = points[i][0];
     y[n_corners++] = points[i][1];
   }
-  cli_plot_line(plot, style, n_corners, x, y);
-}
-
-static double limited_to(const cli_plot_axis *axis, double value) {
-  return fmin(fmax(value, axis->low), axis->high);
-}
-
-void cli_plot_box(cli_plot *plot, const cli_plot_style *style, const double x[2], const double y[2]) {
-  double left = plot_across(plot, limited_to(&plot->x, x[0])), right = plot_across(plot, limited_to(&plot->x, x[1]));
-  double bottom = plot_down(plot, limited_to(&plot->y, y[0])), top = plot_down(plot, limited_to(&plot->y, y[1]));
-  fprintf(plot->to, "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"%s\" fill-opacity=\"0.7\"/>\n",
-          fmin(left, right), fmin(top, bottom), fabs(right - left), fabs(bottom - top), style->color);
+  plot_line(plot, style, n_corners, x, y);
 }
 
 static int is_free(const cli_plot *plot, const double box[4]) {

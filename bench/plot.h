@@ -59,14 +59,8 @@ void cli_plot_panel(cli_plot *plot, const char *title, const cli_plot_axis *x, c
 /* A mark of a radius in pixels; `tip` is shown where the pointer rests on it, and may be null. */
 void cli_plot_mark(cli_plot *plot, const cli_plot_style *style, double x, double y, double radius, const char *tip);
 
-/* A line through points that lie inside the axes. */
-void cli_plot_line(cli_plot *plot, const cli_plot_style *style, int n, const double *x, const double *y);
-
 /* A line through points in any order, from the left to the right, with a corner for each step down. Sorts them. */
 void cli_plot_front(cli_plot *plot, const cli_plot_style *style, int n, double (*points)[2]);
-
-/* A filled box, cut at the axes. */
-void cli_plot_box(cli_plot *plot, const cli_plot_style *style, const double x[2], const double y[2]);
 
 /* Small words beside a place, where they cover no others; none where there is no room. */
 void cli_plot_words(cli_plot *plot, const char *color, double x, double y, const char *words);

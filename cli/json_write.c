@@ -223,32 +223,19 @@ void cli_json_numbers(cli_json *json, const char *key, const double *values, int
   cli_json_close(json);
 }
 
-void cli_json_put_figures(cli_json *json, const char *key, const cli_json_figure *members, size_t n) {
-  if (key)
-    cli_json_object(json, key);
-  for (size_t i = 0; i < n; i++)
-    cli_json_number(json, members[i].key, members[i].value);
-  if (key)
-    cli_json_close(json);
-}
-
-void cli_json_put_counts(cli_json *json, const char *key, const cli_json_counted *members, size_t n) {
-  if (key)
-    cli_json_object(json, key);
-  for (size_t i = 0; i < n; i++)
-    cli_json_count(json, members[i].key, members[i].value);
-  if (key)
-    cli_json_close(json);
-}
-
-void cli_json_put_texts(cli_json *json, const char *key, const cli_json_word *members, size_t n) {
-  if (key)
-    cli_json_object(json, key);
-  for (size_t i = 0; i < n; i++)
-    cli_json_text(json, members[i].key, members[i].value);
-  if (key)
-    cli_json_close(json);
-}
+/* A list of members: an object, or members of the present one where the key is null. */
+#define PUT_MEMBERS(function, member, put)                                                                             \
+  void function(cli_json *json, const char *key, const member *members, size_t n) {                                    \
+    if (key)                                                                                                           \
+      cli_json_object(json, key);                                                                                      \
+    for (size_t i = 0; i < n; i++)                                                                                     \
+      put(json, members[i].key, members[i].value);                                                                     \
+    if (key)                                                                                                           \
+      cli_json_close(json);                                                                                            \
+  }
+PUT_MEMBERS(cli_json_put_figures, cli_json_figure, cli_json_number)
+PUT_MEMBERS(cli_json_put_counts, cli_json_counted, cli_json_count)
+PUT_MEMBERS(cli_json_put_texts, cli_json_word, cli_json_text)
 
 void cli_json_skipped(cli_json *json, const conic_repairs *repairs) {
   cli_json_counts(json, "skipped", {"nan", repairs->nan}, {"zero", repairs->zero}, {"duplicate", repairs->duplicate},

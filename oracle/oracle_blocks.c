@@ -2,6 +2,7 @@
 
 #include <stdatomic.h>
 
+#include "core/base/order.h"
 #include "oracle/oracle_weights.h"
 
 /* A block's edge in samples, and the splats that are set up at a time unless one pixel has more: what a thread needs
@@ -369,18 +370,8 @@ static conic_status do_row(row *r) {
   return status == CONIC_OK ? (conic_status)atomic_load(&r->failure) : status;
 }
 
-static int by_pixel(const void *a, const void *b) {
-  const conic_alternative *first = a, *second = b;
-  if (first->pixel != second->pixel)
-    return first->pixel < second->pixel ? -1 : 1;
-  return (first->number > second->number) - (first->number < second->number);
-}
-static int by_pixel_and_id(const void *a, const void *b) {
-  const conic_admissible_id *first = a, *second = b;
-  if (first->pixel != second->pixel)
-    return first->pixel < second->pixel ? -1 : 1;
-  return (first->id > second->id) - (first->id < second->id);
-}
+CONIC_DEFINE_ORDER_BY_TWO(by_pixel, conic_alternative, pixel, number)
+CONIC_DEFINE_ORDER_BY_TWO(by_pixel_and_id, conic_admissible_id, pixel, id)
 
 /* Puts what the threads have noted of pixels in doubt into the order of the pixels, whoever did which. */
 static conic_status gather_doubts(const oracle_job *j, worker *const *workers, int n_threads) {

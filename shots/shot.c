@@ -18,7 +18,7 @@ void conic_shot_init_sized(conic_shot *shot, size_t size) {
 
 /* --- the chain --- */
 
-const conic_shot_stage *conic_stages_chain(conic_shot_work *work, conic_shot_stage stages[CONIC_MOST_STAGES]) {
+static const conic_shot_stage *stages_chain(conic_shot_work *work, conic_shot_stage stages[CONIC_MOST_STAGES]) {
   const conic_shot_plan *plan = &work->plan;
   conic_shot_stage *leaf = &stages[CONIC_MOST_STAGES - 1], *first = leaf;
   *leaf = (conic_shot_stage){.draw = conic_stage_leaf, .leaf = leaf, .work = work};
@@ -96,7 +96,7 @@ conic_status conic_shot_work_draw(conic_shot_work *work, conic_image *image, con
   conic_camera camera;
   memset(&statistics, 0, sizeof statistics);
   conic_status status = conic_shot_camera(work->context, shot, 0.5, &camera);
-  const conic_shot_stage *first = conic_stages_chain(work, stages);
+  const conic_shot_stage *first = stages_chain(work, stages);
   const conic_look look = {&camera, &shot->render, &shot->view, NULL};
   if (status == CONIC_OK)
     status = first->draw(first, &look, image, &statistics);

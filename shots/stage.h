@@ -73,7 +73,6 @@ conic_status conic_stage_leaf(const conic_shot_stage *stage, const conic_look *l
 
 /* The chain of a plan; `stages` has that much room. Returns the first one. */
 enum { CONIC_MOST_STAGES = 5 };
-const conic_shot_stage *conic_stages_chain(conic_shot_work *work, conic_shot_stage stages[CONIC_MOST_STAGES]);
 
 /* Whether this process has the picture at the end. */
 int conic_work_has_picture(const conic_shot_work *work);

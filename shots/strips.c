@@ -402,7 +402,8 @@ conic_status conic_strips_draw(conic_shot_work *work, const conic_camera *camera
 
 /* --- of a shot --- */
 
-const char *conic_strips_stranger(const conic_shot_work *work) {
+/* Null where a plan's picture can be drawn in strips; else a short reason, as "it is lit". */
+static const char *strips_stranger(const conic_shot_work *work) {
   const conic_shot *shot = work->shot;
   if (work->plan.is_accumulated)
     return "it is a mean of samples";
@@ -420,7 +421,7 @@ const char *conic_strips_stranger(const conic_shot_work *work) {
 }
 
 static conic_status check_strips_shot(const conic_shot_work *work, const char *path) {
-  const char *stranger = conic_strips_stranger(work);
+  const char *stranger = strips_stranger(work);
   if (!conic_file_has_ending(path, "exr"))
     return conic_fail(work->context, CONIC_ERROR_ARGUMENT, "%s: a picture in strips becomes an .exr", path);
   if (stranger)

@@ -24,9 +24,6 @@ typedef struct conic_strips_wish {
   int may_begin;   /* or, where nothing was, from the start */
 } conic_strips_wish;
 
-/* Null where a plan's picture can be drawn in strips; else a short reason, as "it is lit". */
-const char *conic_strips_stranger(const conic_shot_work *work);
-
 /* Draws the begun work into a file, by all processes where windows are what they share: then collective. In the first
  * process the outcome is the picture's. Errors: as conic_source_draw; IO, ARGUMENT; INPUT (what was kept is of another
  * picture). */

@@ -46,17 +46,6 @@ conic_status conic_mesh_lay_texture(conic_context *context, const char *texture_
   return status;
 }
 
-conic_status conic_mesh_read(conic_context *context, const char *path, conic_triangles *triangles) {
-  conic_read_options options;
-  conic_read_options_init(&options);
-  conic_status status = conic_triangles_read_model(context, path, &options, triangles);
-  if (status == CONIC_OK)
-    status = conic_mesh_check(context, path, triangles);
-  if (status != CONIC_OK)
-    conic_triangles_release(context, triangles);
-  return status;
-}
-
 /* --- the input of hybrid models --- */
 
 static conic_status take_hybrid_mesh(conic_context *context, const char *path, const conic_hybrid_reading *reading,

@@ -3,10 +3,6 @@
 
 #include "conic/hybrid.h"
 
-/* Reads a mesh. On success the caller releases *triangles. Errors: as conic_triangles_read's; INPUT where nothing could
- * be drawn. */
-conic_status conic_mesh_read(conic_context *context, const char *path, conic_triangles *triangles);
-
 /* Copies the vertices without a triangle, unless they are leftovers. On success the caller releases *loose. Errors:
  * MEMORY. */
 conic_status conic_mesh_gather_loose(conic_context *context, const conic_model *model, conic_splats *loose);
@@ -37,8 +33,8 @@ typedef struct conic_hybrid_reading {
 } conic_hybrid_reading;
 
 /* Reads a mesh and gives it normals; or, from a file without faces, points, which get sizes where they have none. On
- * success the caller releases *input, or builds a model of it. Errors: as conic_mesh_read's and
- * conic_model_to_splats's. */
+ * success the caller releases *input, or builds a model of it. Errors: as conic_triangles_read's and
+ * conic_model_to_splats's; INPUT where nothing could be drawn. */
 conic_status conic_hybrid_input_read(conic_context *context, const char *path, const conic_hybrid_reading *reading,
                                      conic_hybrid_input *input);
 void conic_hybrid_input_release(conic_context *context, conic_hybrid_input *input);

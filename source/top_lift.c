@@ -54,15 +54,10 @@ double conic_top_reach(const conic_splats *splats, size_t i, float cutoff) {
   return widening * (double)cutoff * sqrt(sum);
 }
 
-static void read_vector(float *const arrays[3], size_t stride, size_t i, double vector[3]) {
-  for (int axis = 0; axis < 3; axis++)
-    vector[axis] = (double)conic_column_at(arrays[axis], stride, i);
-}
-
 /* Whether a splat is wanted, and its place; splats that are not finite are not wanted. */
 static int is_wanted(const conic_top_place *place, const conic_splats *splats, size_t i, double p[3]) {
   double reach = conic_top_reach(splats, i, place->cutoff);
-  read_vector(splats->position, splats->strides.position, i, p);
+  conic_columns_at(splats->position, splats->strides.position, i, p);
   double height = p[2] + splats->origin[2];
   for (int axis = 0; axis < 3; axis++)
     p[axis] += splats->origin[axis] - place->origin[axis];
@@ -74,7 +69,7 @@ static int is_wanted(const conic_top_place *place, const conic_splats *splats, s
 static void lift_axis(const conic_top_place *place, const double p[3], float *const from[3], size_t stride, size_t i,
                       float *const to[3], size_t k) {
   double axis[3], depth = place->distance - p[2];
-  read_vector(from, stride, i, axis);
+  conic_columns_at(from, stride, i, axis);
   for (int a = 0; a < 2; a++)
     to[a][k] = (float)((axis[a] * depth - p[a] * axis[2]) / place->distance);
   to[2][k] = (float)axis[2];

@@ -11,20 +11,20 @@ enum { RGBA = 1u << CONIC_PLANE_RGBA, LOOKED_AT = RGBA | 1u << CONIC_PLANE_NORMA
 /* What files of a kind can show of an image. */
 typedef enum file_holds { HOLDS_RGBA, HOLDS_LOOKS, HOLDS_ONE, HOLDS_ALL } file_holds;
 
-const char *cli_output_ending(const cli_render_job *job, const char *path) {
+static const char *output_ending(const cli_render_job *job, const char *path) {
   const char *own = conic_file_ending(path);
   return *own ? own : job->writing.format ? job->writing.format : "png";
 }
 
 int cli_output_is_one_of(const cli_render_job *job, const char *path, const char *const *endings) {
   for (; *endings; endings++)
-    if (strcasecmp(cli_output_ending(job, path), *endings) == 0)
+    if (strcasecmp(output_ending(job, path), *endings) == 0)
       return 1;
   return 0;
 }
 
 static file_holds holds(const cli_render_job *job, const char *path) {
-  const char *ending = cli_output_ending(job, path);
+  const char *ending = output_ending(job, path);
   if (strcasecmp(ending, "exr") == 0)
     return HOLDS_ALL;
   if (strcasecmp(ending, "pfm") == 0)

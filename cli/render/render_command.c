@@ -11,11 +11,9 @@
 #include "cli/render/strip_pictures.h"
 #include "cli/render/units.h"
 #include "cli/scene/stereo.h"
+#include "core/base/order.h"
 
-static int compare_frames(const void *a, const void *b) {
-  const conic_render_statistics *first = a, *second = b;
-  return (first->ms.frame > second->ms.frame) - (first->ms.frame < second->ms.frame);
-}
+CONIC_DEFINE_ORDER(compare_frames, conic_render_statistics, ms.frame)
 
 /* Each time's own median over the frames. */
 static double median_of(conic_render_statistics *frames, size_t n, size_t offset) {

@@ -162,7 +162,6 @@ conic_status cli_render_picture(cli_render_job *job, conic_image *image, conic_s
 
 /* What kind of file an output is: its name's ending, or, without one, that of --format; and whether it is one of those,
  * null after the last. */
-const char *cli_output_ending(const cli_render_job *job, const char *path);
 int cli_output_is_one_of(const cli_render_job *job, const char *path, const char *const *endings);
 
 /* Wrong usage where a plane that was asked for goes into no file. */

@@ -2,6 +2,7 @@
 
 #include "core/base/base.h"
 #include "core/base/byte_order.h"
+#include "core/base/order.h"
 #include "core/base/trigonometry.h"
 #include "core/cameras/camera_list.h"
 #include "core/files/number.h"
@@ -312,10 +313,7 @@ static conic_status read_text_images(colmap_reader *reader) {
 
 /* --- both --- */
 
-static int compare_ids(const void *a, const void *b) {
-  const colmap_camera *first = a, *second = b;
-  return (first->id > second->id) - (first->id < second->id);
-}
+CONIC_DEFINE_ORDER(compare_ids, colmap_camera, id)
 
 /* Equal names keep the file's order, which is their order in memory. */
 static int compare_image_names(const void *a, const void *b) {

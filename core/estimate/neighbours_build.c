@@ -2,6 +2,7 @@
 
 #include "core/base/random.h"
 #include "core/estimate/neighbours.h"
+#include "core/splats/places.h"
 
 enum { SHARED_LEVELS = 6 };
 
@@ -17,52 +18,26 @@ static int is_finite(const point_record *r) {
   return r->position[0] * 0.0f == 0.0f && r->position[1] * 0.0f == 0.0f && r->position[2] * 0.0f == 0.0f;
 }
 
-/* Equal positions have equal hashes: adding zero turns -0 into 0. */
-static uint64_t hash_position(const float position[3]) {
-  uint32_t bits[3];
-  for (int axis = 0; axis < 3; axis++) {
-    float value = position[axis] + 0.0f;
-    memcpy(&bits[axis], &value, sizeof value);
-  }
-  return conic_random_mix(conic_random_mix((uint64_t)bits[0] << 32 | bits[1]) + bits[2]);
-}
-
-static int same_position(const float a[3], const float b[3]) {
-  return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
-}
-
 /* Gathers the finite positions into `records`, coincident ones once; for now, slot_of_point is the number of the
  * point's record. */
 static conic_status gather_points(conic_context *context, const float *const positions[3], conic_neighbours *tree,
                                   point_record *records) {
-  size_t n_buckets = 16;
-  while (n_buckets < tree->n_points + tree->n_points / 2)
-    n_buckets *= 2;
-  uint32_t *buckets = conic_memory_allocate(context, n_buckets, sizeof *buckets);
-  if (!buckets)
-    return CONIC_ERROR_MEMORY;
-  memset(buckets, 0xFF, n_buckets * sizeof *buckets);
-  size_t n_records = 0;
-  for (size_t i = 0; i < tree->n_points; i++) {
-    point_record r = {{positions[0][i], positions[1][i], positions[2][i]}, (uint32_t)i};
-    tree->slot_of_point[i] = CONIC_NO_SLOT;
+  conic_status status = conic_places_find(context, positions, tree->n_points, tree->slot_of_point);
+  for (size_t i = 0; i < tree->n_points && status == CONIC_OK; i++) {
+    const point_record r = {{positions[0][i], positions[1][i], positions[2][i]}, (uint32_t)i};
+    uint32_t *slot = &tree->slot_of_point[i], first = *slot;
     if (!is_finite(&r)) {
       tree->n_not_finite++;
-      continue;
-    }
-    size_t i_bucket = (size_t)hash_position(r.position) & (n_buckets - 1);
-    while (buckets[i_bucket] != CONIC_NO_SLOT && !same_position(records[buckets[i_bucket]].position, r.position))
-      i_bucket = (i_bucket + 1) & (n_buckets - 1);
-    if (buckets[i_bucket] == CONIC_NO_SLOT) {
-      buckets[i_bucket] = (uint32_t)n_records;
-      records[n_records++] = r;
-    } else
+      *slot = CONIC_NO_SLOT;
+    } else if (first == i) {
+      *slot = (uint32_t)tree->n_slots;
+      records[tree->n_slots++] = r;
+    } else {
       tree->n_duplicates++;
-    tree->slot_of_point[i] = buckets[i_bucket];
+      *slot = tree->slot_of_point[first];
+    }
   }
-  tree->n_slots = n_records;
-  conic_memory_release(context, buckets);
-  return CONIC_OK;
+  return status;
 }
 
 /* A strict order of the records: by the axis, then by the next ones, so that splits are unique. */

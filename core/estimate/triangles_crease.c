@@ -4,6 +4,7 @@
 #include "core/base/vectors.h"
 #include "core/estimate/neighbourhood.h"
 #include "core/splats/columns.h"
+#include "core/splats/places.h"
 
 /* Where more corners meet, all get their faces' normals: each would have to look at all others. */
 enum { MOST_CORNERS = 256 };
@@ -23,51 +24,6 @@ typedef struct creasing {
 
 /* --- places --- */
 
-static uint64_t hash_of(const float p[3]) {
-  uint64_t hash = 0;
-  for (int axis = 0; axis < 3; axis++) {
-    float value = p[axis] + 0.0f; /* -0 is 0 */
-    uint32_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    hash = (hash ^ bits) * UINT64_C(0x9e3779b97f4a7c15);
-    hash ^= hash >> 29;
-  }
-  return hash;
-}
-
-static void read_vertex(const conic_triangles *t, size_t i, float p[3]) {
-  for (int axis = 0; axis < 3; axis++)
-    p[axis] = t->position[axis][i];
-}
-
-static int is_same_place(const conic_triangles *t, size_t i, const float p[3]) {
-  return t->position[0][i] == p[0] && t->position[1][i] == p[1] && t->position[2][i] == p[2];
-}
-
-/* The place of each vertex is the first vertex that is there. */
-static conic_status find_places(conic_context *context, creasing *c) {
-  const conic_triangles *t = c->triangles;
-  size_t n_slots = 16;
-  while (n_slots < 2 * t->n_vertices)
-    n_slots *= 2;
-  uint32_t *table = conic_memory_allocate(context, n_slots, sizeof *table);
-  if (!table)
-    return CONIC_ERROR_MEMORY;
-  memset(table, 0xff, n_slots * sizeof *table);
-  for (size_t i = 0; i < t->n_vertices; i++) {
-    float p[3];
-    read_vertex(t, i, p);
-    size_t slot = (size_t)hash_of(p) & (n_slots - 1);
-    while (table[slot] != UINT32_MAX && !is_same_place(t, table[slot], p))
-      slot = (slot + 1) & (n_slots - 1);
-    if (table[slot] == UINT32_MAX)
-      table[slot] = (uint32_t)i;
-    c->place[i] = table[slot];
-  }
-  conic_memory_release(context, table);
-  return CONIC_OK;
-}
-
 /* A counting sort, as of vertices' triangles. */
 static void sort_corners(creasing *c) {
   const conic_triangles *t = c->triangles;
@@ -83,12 +39,7 @@ static void sort_corners(creasing *c) {
 
 /* A face's normal: twice its area long; zero where it is not finite. */
 static void normal_of_face(const conic_triangles *t, size_t i, double normal[3]) {
-  double sides[2][3];
-  const uint32_t *corner = t->corners[i];
-  for (int k = 0; k < 2; k++)
-    for (int axis = 0; axis < 3; axis++)
-      sides[k][axis] = (double)t->position[axis][corner[k + 1]] - (double)t->position[axis][corner[0]];
-  conic_cross(sides[0], sides[1], normal);
+  conic_triangles_face_normal(t, i, normal);
   if (!(conic_dot(normal, normal) * 0.0 == 0.0))
     memset(normal, 0, 3 * sizeof *normal);
 }
@@ -211,7 +162,8 @@ static conic_status make_room(conic_context *context, creasing *c) {
 }
 
 static conic_status crease_normals(conic_context *context, creasing *c, size_t *n_normals) {
-  conic_status status = find_places(context, c);
+  const conic_triangles *t = c->triangles;
+  conic_status status = conic_places_find(context, (const float *const *)t->position, t->n_vertices, c->place);
   if (status != CONIC_OK)
     return status;
   sort_corners(c);

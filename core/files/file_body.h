@@ -77,10 +77,6 @@ typedef struct conic_file_layout {
 
 void conic_file_add_array(conic_file_layout *layout, size_t n_bytes, conic_file_record record);
 
-/* Finds the arrays in the bytes of a whole file. */
-void conic_file_list_arrays(const conic_file_layout *layout, const unsigned char *bytes,
-                            const void *arrays[CONIC_FILE_MOST_ARRAYS]);
-
 /* The sum over the sums of arrays in memory. */
 uint64_t conic_file_sum_arrays(conic_context *context, const conic_file_layout *layout, const void *const *arrays);
 /* The same of the arrays in the bytes of a whole file; without a context, on this thread. */

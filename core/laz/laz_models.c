@@ -24,7 +24,7 @@ static int add_block(conic_laz_arena *arena) {
   return !arena->is_out;
 }
 
-uint16_t *conic_laz_arena_take(conic_laz_arena *arena, size_t n) {
+static uint16_t *laz_arena_take(conic_laz_arena *arena, size_t n) {
   if (arena->is_out)
     return NULL;
   if (n > BLOCK_NUMBERS - arena->used) {
@@ -45,7 +45,7 @@ static size_t count_places(unsigned n) {
 
 int conic_laz_model_begin(conic_laz_model *model, conic_laz_arena *arena, unsigned n) {
   size_t n_places = count_places(n);
-  uint16_t *numbers = conic_laz_arena_take(arena, 2 * (size_t)n + 1 + n_places / 2);
+  uint16_t *numbers = laz_arena_take(arena, 2 * (size_t)n + 1 + n_places / 2);
   if (!numbers)
     return 0;
   *model = (conic_laz_model){.bound = numbers,

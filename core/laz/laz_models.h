@@ -23,7 +23,6 @@ void conic_laz_arena_release(conic_laz_arena *arena);
 
 /* Takes n numbers of 16 bits, undefined, at most CONIC_LAZ_ARENA_MOST; null where there is no memory. */
 enum { CONIC_LAZ_ARENA_MOST = 4096 };
-uint16_t *conic_laz_arena_take(conic_laz_arena *arena, size_t n);
 
 /* A model of n symbols, 2 to 1024. All zero: not begun. */
 typedef struct conic_laz_model {

@@ -158,8 +158,8 @@ conic_status conic_splats_enter(conic_context *context, const char *who, const c
   return status;
 }
 
-conic_status conic_triangles_enter(conic_context *context, const char *who, const conic_triangles *given,
-                                   conic_triangles *close, float **block) {
+static conic_status triangles_enter(conic_context *context, const char *who, const conic_triangles *given,
+                                    conic_triangles *close, float **block) {
   conic_column columns[TRIANGLES_COLUMNS];
   *block = NULL;
   conic_status status = conic_triangles_check(context, given, who);
@@ -182,7 +182,7 @@ conic_status conic_drawing_enter(conic_context *context, const char *who, const 
   if (given->splats)
     status = conic_splats_enter(context, who, given->splats, &entered->splats, &entered->blocks[0]);
   if (status == CONIC_OK && given->triangles)
-    status = conic_triangles_enter(context, who, given->triangles, &entered->triangles, &entered->blocks[1]);
+    status = triangles_enter(context, who, given->triangles, &entered->triangles, &entered->blocks[1]);
   return status;
 }
 

@@ -20,6 +20,14 @@ static inline float conic_column_at(const float *floats, size_t stride, size_t i
   return *(const float *)((const char *)floats + i * (stride ? stride : sizeof *floats));
 }
 
+static inline void conic_columns_at(float *const columns[3], size_t stride, size_t i, double vector[3]) {
+  for (int axis = 0; axis < 3; axis++)
+    vector[axis] = (double)conic_column_at(columns[axis], stride, i);
+}
+
+/* The normal of a face, its length twice its area; differences of floats, formed in double. */
+void conic_triangles_face_normal(const conic_triangles *triangles, size_t i, double normal[3]);
+
 /* What makes a set unusable, or null: it is null, its arrays are not whole, its strides or reserved words not sound. */
 const char *conic_splats_fault(const conic_splats *given);
 const char *conic_triangles_fault(const conic_triangles *given);
@@ -36,8 +44,6 @@ conic_status conic_triangles_check_own(conic_context *context, const char *who, 
  * also INPUT, by conic_triangles_check. */
 conic_status conic_splats_enter(conic_context *context, const char *who, const conic_splats *given, conic_splats *close,
                                 float **block);
-conic_status conic_triangles_enter(conic_context *context, const char *who, const conic_triangles *given,
-                                   conic_triangles *close, float **block);
 
 /* Both of a drawing; sets that it has not are empty. Whoever enters one leaves it, on failure too. */
 typedef struct conic_entered_drawing {

@@ -24,11 +24,6 @@ size_t conic_splats_count_dots(const conic_splats *splats) {
   return n;
 }
 
-static void vector_at(float *const arrays[3], size_t stride, size_t i, double vector[3]) {
-  for (int axis = 0; axis < 3; axis++)
-    vector[axis] = (double)conic_column_at(arrays[axis], stride, i);
-}
-
 /* Turns the normal to the side of `back`, the unit vector towards the viewer, and no farther from it than the greatest
  * lean. */
 static void settle_normal(const double back[3], double normal[3]) {
@@ -66,9 +61,9 @@ static void lean_disc(const double back[3], const double normal[3], double sigma
 static void face_dot(const facing_work *work, size_t i) {
   const conic_splats *splats = work->splats;
   double u[3], v[3], normal[3], back[3];
-  vector_at(splats->tangent_u, splats->strides.tangent_u, i, u);
-  vector_at(splats->tangent_v, splats->strides.tangent_v, i, v);
-  vector_at(splats->position, splats->strides.position, i, back);
+  conic_columns_at(splats->tangent_u, splats->strides.tangent_u, i, u);
+  conic_columns_at(splats->tangent_v, splats->strides.tangent_v, i, v);
+  conic_columns_at(splats->position, splats->strides.position, i, back);
   for (int axis = 0; axis < 3; axis++)
     back[axis] = work->eye[axis] - back[axis];
   double a = conic_length(u), b = conic_length(v);

@@ -114,8 +114,7 @@ double conic_drawing_near(const conic_drawing *drawing) {
   return conic_near_of_box(low, high);
 }
 
-/* The normal of a face, its length twice its area; differences of floats, formed in double. */
-static void normal_of_face(const conic_triangles *t, size_t i, double normal[3]) {
+void conic_triangles_face_normal(const conic_triangles *t, size_t i, double normal[3]) {
   double side[2][3];
   const uint32_t *corner = t->corners[i];
   for (int k = 0; k < 2; k++)
@@ -141,7 +140,7 @@ conic_status conic_triangles_smooth(conic_context *context, conic_triangles *tri
   status = sums ? allocate_floats(context, triangles->n_vertices, normal, 3) : CONIC_ERROR_MEMORY;
   for (size_t i = 0; status == CONIC_OK && i < triangles->count; i++) {
     double face[3];
-    normal_of_face(triangles, i, face);
+    conic_triangles_face_normal(triangles, i, face);
     if (!(face[0] * 0.0 == 0.0 && face[1] * 0.0 == 0.0 && face[2] * 0.0 == 0.0))
       continue;
     for (int k = 0; k < 3; k++)

@@ -1,13 +1,11 @@
 /* Levels of what simplifying has left: each cluster's triangles and their borders. */
 
+#include "core/base/order.h"
 #include "lod/clusters/cluster_simplifier.h"
 
 /* --- borders --- */
 
-static int compare_borders(const void *a, const void *b) {
-  const conic_simplifier_border *first = a, *second = b;
-  return (first->of.edge > second->of.edge) - (first->of.edge < second->of.edge);
-}
+CONIC_DEFINE_ORDER(compare_borders, conic_simplifier_border, of.edge)
 
 /* The border of a cluster between two vertices next to each other on a chain. Returns how many there are: one. */
 static int add_border(conic_simplifier *s, const conic_chain *chain, int side, const uint32_t slots[2]) {

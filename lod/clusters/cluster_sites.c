@@ -103,7 +103,8 @@ static int sides_of_others(const conic_clustered_mesh *mesh, uint32_t face) {
   return sides;
 }
 
-int conic_face_lattice_is_own(const conic_clustered_mesh *mesh, const conic_face_lattice *l, int i, int j) {
+/* Whether a place is this lattice's. Where two faces of the cluster share a side, only one has its places. */
+static int face_lattice_is_own(const conic_clustered_mesh *mesh, const conic_face_lattice *l, int i, int j) {
   return !(sides_at(l, i, j) & sides_of_others(mesh, l->face));
 }
 
@@ -350,7 +351,7 @@ void conic_cluster_find_contrasts(conic_sampler *s) {
     const conic_face_lattice *l = &s->now.lattices[k];
     for (int i = 0; i <= l->sides; i++)
       for (int j = 0; j <= l->sides - i; j++)
-        if (conic_face_lattice_is_own(s->job->mesh, l, i, j))
+        if (face_lattice_is_own(s->job->mesh, l, i, j))
           note_place(s, l, i, j, 0.5 * conic_spacing_at(s, s->depth[k]));
   }
   for (size_t i = 0; i < s->now.n_sites; i++)

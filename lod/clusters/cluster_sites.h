@@ -145,9 +145,6 @@ static inline double conic_spacing_at(const conic_sampler *sampler, int depth) {
   return sampler->job->spacing / (double)(1 << depth);
 }
 
-/* Whether a place is this lattice's. Where two faces of the cluster share a side, only one has its places. */
-int conic_face_lattice_is_own(const conic_clustered_mesh *mesh, const conic_face_lattice *lattice, int i, int j);
-
 /* Fills in lattices, sites and owners. Errors: MEMORY. */
 conic_status conic_cluster_find_sites(conic_sampler *sampler);
 

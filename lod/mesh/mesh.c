@@ -4,25 +4,11 @@
 #include "core/base/radix.h"
 #include "core/base/random.h"
 #include "core/base/vectors.h"
+#include "core/splats/places.h"
 
 static const uint32_t none = UINT32_MAX;
 
 /* --- vertices that lie in one place --- */
-
-static uint64_t position_hash(const conic_mesh *mesh, size_t i) {
-  uint64_t hash = 0;
-  for (int axis = 0; axis < 3; axis++) {
-    float value = mesh->position[axis][i] + 0.0f; /* no -0 */
-    uint32_t bits = conic_bits_of_float(value);
-    hash = conic_random_mix(hash ^ bits) + (uint64_t)axis;
-  }
-  return conic_random_mix(hash);
-}
-
-static int is_same_place(const conic_mesh *mesh, size_t a, size_t b) {
-  return mesh->position[0][a] == mesh->position[0][b] && mesh->position[1][a] == mesh->position[1][b] &&
-         mesh->position[2][a] == mesh->position[2][b];
-}
 
 static int is_finite_vertex(const conic_mesh *mesh, size_t i) {
   float zero = (mesh->position[0][i] * 0.0f + mesh->position[1][i] * 0.0f) + mesh->position[2][i] * 0.0f;
@@ -30,25 +16,13 @@ static int is_finite_vertex(const conic_mesh *mesh, size_t i) {
 }
 
 static conic_status weld(conic_context *context, const conic_mesh *mesh, conic_adjacency *adjacency) {
-  size_t room = (size_t)1 << (conic_bits_below(mesh->n_vertices) + 1);
-  uint32_t *table = conic_memory_allocate(context, room, sizeof *table);
-  if (!table)
-    return CONIC_ERROR_MEMORY;
-  memset(table, 0xFF, room * sizeof *table);
-  for (size_t i = 0; i < mesh->n_vertices; i++) {
-    adjacency->place[i] = (uint32_t)i;
+  conic_status status = conic_places_find(context, mesh->position, mesh->n_vertices, adjacency->place);
+  for (size_t i = 0; i < mesh->n_vertices && status == CONIC_OK; i++) {
     if (!is_finite_vertex(mesh, i))
-      continue;
-    size_t slot = (size_t)position_hash(mesh, i) & (room - 1);
-    while (table[slot] != none && !is_same_place(mesh, table[slot], i))
-      slot = (slot + 1) & (room - 1);
-    if (table[slot] == none)
-      table[slot] = (uint32_t)i;
-    adjacency->place[i] = table[slot];
-    adjacency->oddities.welded += table[slot] != i;
+      adjacency->place[i] = (uint32_t)i;
+    adjacency->oddities.welded += adjacency->place[i] != i;
   }
-  conic_memory_release(context, table);
-  return CONIC_OK;
+  return status;
 }
 
 /* --- faces of use --- */

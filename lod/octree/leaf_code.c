@@ -15,7 +15,7 @@ enum { POSITION_BITS = 13, POSITION_STEPS = (1 << POSITION_BITS) - 1 };
 
 enum { BLOCKS_A_TASK = 64 };
 
-size_t conic_leaf_code_bytes(int has_colors, int has_opacities) {
+static size_t leaf_code_bytes(int has_colors, int has_opacities) {
   return AT_REST + (has_colors ? 3u : 0u) + (has_opacities ? 1u : 0u);
 }
 
@@ -24,7 +24,7 @@ static size_t count_blocks(size_t n_leaves) {
 }
 
 size_t conic_leaf_codes_bytes(size_t n_leaves, int has_colors, int has_opacities) {
-  return count_blocks(n_leaves) * CONIC_LEAF_BLOCK_BYTES + n_leaves * conic_leaf_code_bytes(has_colors, has_opacities);
+  return count_blocks(n_leaves) * CONIC_LEAF_BLOCK_BYTES + n_leaves * leaf_code_bytes(has_colors, has_opacities);
 }
 
 /* The box of a block: its low corner and the steps of its positions, as little-endian floats. */
@@ -123,7 +123,7 @@ typedef struct leaf_job {
 static void code_block(const leaf_job *job, size_t i_block) {
   conic_splats *leaves = job->leaves;
   size_t begin = i_block * CONIC_LEAF_BLOCK, end = begin + CONIC_LEAF_BLOCK;
-  size_t n_bytes = conic_leaf_code_bytes(leaves->color[0] != NULL, leaves->opacity != NULL);
+  size_t n_bytes = leaf_code_bytes(leaves->color[0] != NULL, leaves->opacity != NULL);
   unsigned char *head = job->codes + i_block * CONIC_LEAF_BLOCK_BYTES;
   unsigned char *code = job->codes + count_blocks(leaves->count) * CONIC_LEAF_BLOCK_BYTES + begin * n_bytes;
   leaf_box box;

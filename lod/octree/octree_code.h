@@ -98,7 +98,6 @@ float conic_code_factor_of(const conic_code_scale *scale, uint8_t code);
 enum { CONIC_LEAF_BLOCK = 64, CONIC_LEAF_BLOCK_BYTES = 24 };
 
 /* The bytes of one leaf, and of all: the blocks' first, then the leaves'. */
-size_t conic_leaf_code_bytes(int has_colors, int has_opacities);
 size_t conic_leaf_codes_bytes(size_t n_leaves, int has_colors, int has_opacities);
 
 /* Encodes all leaves in the arrays. */

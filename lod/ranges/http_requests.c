@@ -8,6 +8,7 @@
 
 #include "core/base/clock.h"
 #include "core/base/memory.h"
+#include "core/base/order.h"
 
 enum {
   JOINED_BYTES = 1 << 19, /* ranges are joined to requests of up to so many, */
@@ -163,11 +164,7 @@ static int is_link_full(const conic_http_ranges *http) {
   return n > (ahead_s + 2.0 * http->latency_s) * http->bytes_a_second;
 }
 
-static int compare_offsets(const void *a, const void *b) {
-  uint64_t first = ((const conic_queued_range *)a)->range.offset,
-           second = ((const conic_queued_range *)b)->range.offset;
-  return (first > second) - (first < second);
-}
+CONIC_DEFINE_ORDER(compare_offsets, conic_queued_range, range.offset)
 
 static uint64_t end_of(const conic_queued_range *part) {
   return part->range.offset + part->range.n_bytes;

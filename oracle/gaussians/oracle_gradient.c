@@ -1,6 +1,7 @@
 /* The derivative of a picture of Gaussians: cells of pixels, each with the Gaussians that it may show in their order,
  * and what the pixels give them summed up pixel by pixel, cell by cell, whatever thread did which. */
 
+#include "core/base/order.h"
 #include "oracle/gaussians/oracle_gradient_job.h"
 
 enum { SHOW_RUN = 1024, EDGE = 16 };
@@ -18,10 +19,7 @@ static void show_gaussians(void *data, size_t i_run) {
       j->shown[i] = (oracle_shown){.first = {1, 1}};
 }
 
-static int compare_ranks(const void *a, const void *b) {
-  const shown_rank *x = a, *y = b;
-  return x->key != y->key ? (x->key > y->key ? 1 : -1) : (x->index > y->index) - (x->index < y->index);
-}
+CONIC_DEFINE_ORDER_BY_TWO(compare_ranks, shown_rank, key, index)
 
 /* Counts, then, where `entries` is there, puts every Gaussian into its cells, in the order that all pixels share. */
 static void put_shown(const oracle_gradient_job *j, const shown_rank *ranks, size_t n, size_t *places,
@@ -95,10 +93,7 @@ int conic_oracle_pixel_weights(const conic_gaussian_weights *w, size_t pixel, do
   return is_any;
 }
 
-static int compare_met(const void *a, const void *b) {
-  const oracle_met *x = a, *y = b;
-  return x->key != y->key ? (x->key > y->key ? 1 : -1) : (x->index > y->index) - (x->index < y->index);
-}
+CONIC_DEFINE_ORDER_BY_TWO(compare_met, oracle_met, key, index)
 
 /* What covers the pixel, in its order. */
 static size_t meet_all_shown(const oracle_gradient_job *j, gradient_worker *w, size_t n, size_t x, size_t y) {

@@ -7,6 +7,7 @@
  *
  * Decisions in doubt: each is followed the other way by itself, and what that changes is added up. */
 
+#include "core/base/order.h"
 #include "oracle/gaussians/oracle_gradient_job.h"
 
 #define UNIT ORACLE_FLOAT_UNIT
@@ -245,11 +246,7 @@ static void follow_end(pixel_bound *p, size_t n) {
   }
 }
 
-static int compare_bounded(const void *a, const void *b) {
-  const bounded_met *x = a, *y = b;
-  return x->met.key != y->met.key ? (x->met.key > y->met.key ? 1 : -1)
-                                  : (x->met.index > y->met.index) - (x->met.index < y->met.index);
-}
+CONIC_DEFINE_ORDER_BY_TWO(compare_bounded, bounded_met, met.key, met.index)
 
 /* All that may cover the pixel before compositing ends for sure. */
 static void meet_all_that_may(pixel_bound *p, size_t n, size_t x, size_t y) {

@@ -1,6 +1,7 @@
 /* Every pixel's visible splats and its visible triangle, line by line, into a deep image. */
 
 #include "core/base/base.h"
+#include "core/base/order.h"
 #include "core/pictures/image_exr_deep.h"
 #include "raster/explain/pixel_contributions.h"
 
@@ -114,12 +115,7 @@ static conic_status make_room_for_line(conic_context *context, line *l) {
              : conic_memory_reserve(context, &l->samples, 0, l->n_samples, &l->room, sizeof *l->samples);
 }
 
-static int compare_depths(const void *a, const void *b) {
-  const conic_deep_sample *first = a, *second = b;
-  if (first->depth != second->depth)
-    return first->depth < second->depth ? -1 : 1;
-  return (first->id > second->id) - (first->id < second->id);
-}
+CONIC_DEFINE_ORDER_BY_TWO(compare_depths, conic_deep_sample, depth, id)
 
 /* Shading is of the pixel, not of its splats: what it makes of the mean colour it makes of each. Where the mean is
  * black, nothing but a highlight is seen, which all have alike. */

@@ -1,6 +1,7 @@
 #include "raster/transparency/pixel_sheets.h"
 
 #include "core/base/base.h"
+#include "core/base/order.h"
 #include "raster/transparency/triangle_alpha.h"
 
 /* The sums over a sheet, as the picture forms them. */
@@ -22,10 +23,7 @@ static int compare_seen(const void *a, const void *b) {
   return (first->i_splat > second->i_splat) - (first->i_splat < second->i_splat);
 }
 
-static int compare_file_order(const void *a, const void *b) {
-  const conic_ranked_splat *first = a, *second = b;
-  return (first->i_splat > second->i_splat) - (first->i_splat < second->i_splat);
-}
+CONIC_DEFINE_ORDER(compare_file_order, conic_ranked_splat, i_splat)
 
 static int compare_ranked_triangles(const void *a, const void *b) {
   const conic_ranked_triangle *first = a, *second = b;

@@ -197,11 +197,6 @@ static conic_status find_eye(conic_context *context, const conic_framing *framin
 
 enum { MOST_PLACES = 20000 };
 
-static int compare_reach(const void *a, const void *b) {
-  const double *first = a, *second = b;
-  return (*first > *second) - (*first < *second);
-}
-
 /* Some of a component of all places, in order; returns how many. */
 static size_t sort_places(const conic_splats_shares *shares, const conic_drawing *drawing, int axis, double *sorted) {
   const conic_splats *s = drawing->splats;
@@ -217,7 +212,7 @@ static size_t sort_places(const conic_splats_shares *shares, const conic_drawing
   for (size_t i = 0; i < n; i++)
     if (sorted[i] - sorted[i] == 0.0)
       sorted[n_finite++] = sorted[i];
-  qsort(sorted, n_finite, sizeof *sorted, compare_reach);
+  qsort(sorted, n_finite, sizeof *sorted, conic_compare_doubles);
   return n_finite;
 }
 

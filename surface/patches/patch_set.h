@@ -93,9 +93,6 @@ void conic_patches_plan(conic_patches *patches, const conic_patches_view *view, 
 /* The weight of a FADING slot's patch; its splat has the rest. */
 double conic_patches_share(const conic_patches *patches, const conic_patches_view *view, size_t slot);
 
-/* How many rows of samples a patch needs, seen from no nearer than a sphere about p. */
-double conic_patch_rows(const conic_patches_view *view, const conic_patch *patch, const double p[3], double around);
-
 /* Samples a patch that needs finer grids than the pyramid's, as cells of its own, each as fine as needed. `to` may be
  * null. Returns how many samples there are. */
 size_t conic_patch_sample_deep(const conic_patches_view *view, const conic_patch *patch, int degree, double cutoff,

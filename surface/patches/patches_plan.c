@@ -22,7 +22,7 @@ typedef struct patches_planning {
 } patches_planning;
 
 /* So many rows that samples are a step apart on the screen, or so many that more would not be better. */
-double conic_patch_rows(const conic_patches_view *view, const conic_patch *patch, const double p[3], double around) {
+static double patch_rows(const conic_patches_view *view, const conic_patch *patch, const double p[3], double around) {
   double across_px = 2.0 * conic_patches_pixels(view, p, around, (double)patch->radius);
   double bend_px = conic_patches_pixels(view, p, around, (double)patch->bend);
   double flat2 =
@@ -76,7 +76,7 @@ static uint8_t plan_slot(const patches_planning *work, size_t slot) {
     return CONIC_PLAN_SPLAT;
   if (work->view->cull_back && faces_away(work->view, patch, reach))
     return CONIC_PLAN_CULLED;
-  double rows = conic_patch_rows(work->view, patch, p, reach);
+  double rows = patch_rows(work->view, patch, p, reach);
   int fading = radius_px < SURE_RADIUS_PX ? CONIC_PLAN_FADING : 0;
   for (int i = 0; i < CONIC_N_GRIDS; i++)
     if (rows <= (double)conic_grid_sizes[i])
@@ -212,7 +212,7 @@ static void descend(descent *d, int depth, int64_t row, int64_t column) {
   place_on_patch(d, s, t, p);
   if (!conic_patches_sees(d->view, p, around))
     return;
-  if (depth == DEEPEST_CELL || conic_patch_rows(d->view, d->patch, p, around) * half <= CELL_ROWS) {
+  if (depth == DEEPEST_CELL || patch_rows(d->view, d->patch, p, around) * half <= CELL_ROWS) {
     conic_grid_part part = {CELL_ROWS * (INT64_C(1) << depth), CELL_ROWS * row, CELL_ROWS * column, CELL_ROWS,
                             CELL_ROWS};
     emit_cell(d, &part);

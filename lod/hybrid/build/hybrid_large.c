@@ -1,6 +1,7 @@
 /* Models of meshes that are larger than memory: cell by cell, each built with the faces about it, so that cells meet
  * without a gap. */
 
+#include "core/base/order.h"
 #include "lod/hybrid/build/hybrid_build.h"
 #include "lod/hybrid/model/hybrid_store.h"
 #include "lod/mesh/mesh_cells.h"
@@ -87,10 +88,7 @@ static conic_status build_cells(large_building *b, uint32_t i) {
   return status;
 }
 
-static int compare_lengths(const void *a, const void *b) {
-  double first = ((const cell_length *)a)->length, second = ((const cell_length *)b)->length;
-  return (first > second) - (first < second);
-}
+CONIC_DEFINE_ORDER(compare_lengths, cell_length, length)
 
 /* The median of the cells' medians, each as often as it has surfels. */
 static double median_of_cells(cell_length *lengths, size_t n_lengths) {

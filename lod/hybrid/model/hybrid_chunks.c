@@ -15,7 +15,7 @@ static uint64_t vertex_bytes(uint32_t flags) {
                         (flags & CONIC_CHY_TEXTURE_COORDINATES ? 2 : 0));
 }
 
-uint64_t conic_hybrid_level_bytes(uint32_t flags, const conic_hybrid_level *level) {
+static uint64_t hybrid_level_bytes(uint32_t flags, const conic_hybrid_level *level) {
   uint64_t corner = level->n_vertices <= CONIC_HYBRID_NARROW ? 2 : 4;
   uint64_t triangle = 3 * corner + (flags & CONIC_CHY_MATERIALS ? 4 : 0);
   return whole_units(CONIC_HYBRID_SUM_BYTES +
@@ -29,7 +29,7 @@ uint64_t conic_hybrid_frame_bytes(const conic_hybrid_cluster *cluster) {
   return n_bytes ? whole_units(CONIC_HYBRID_SUM_BYTES + n_bytes) : 0;
 }
 
-uint64_t conic_hybrid_ends_bytes(uint32_t flags, const conic_hybrid_cluster *cluster) {
+static uint64_t hybrid_ends_bytes(uint32_t flags, const conic_hybrid_cluster *cluster) {
   return cluster->n_slots ? whole_units(CONIC_HYBRID_SUM_BYTES + vertex_bytes(flags) * cluster->n_slots) : 0;
 }
 
@@ -48,14 +48,14 @@ uint32_t conic_hybrid_ends_chunk(const conic_hybrid *h, uint32_t cluster) {
 conic_hybrid_place conic_hybrid_chunk_place(const conic_hybrid *h, uint32_t chunk) {
   if (chunk < h->n_levels)
     return (conic_hybrid_place){(uint64_t)h->levels[chunk].at * CONIC_HYBRID_UNIT,
-                                conic_hybrid_level_bytes(h->flags, &h->levels[chunk])};
+                                hybrid_level_bytes(h->flags, &h->levels[chunk])};
   size_t i = chunk - h->n_levels;
   if (i < h->n_clusters)
     return (conic_hybrid_place){(uint64_t)h->clusters[i].frame_at * CONIC_HYBRID_UNIT,
                                 conic_hybrid_frame_bytes(&h->clusters[i])};
   i -= h->n_clusters;
   return (conic_hybrid_place){(uint64_t)h->clusters[i].ends_at * CONIC_HYBRID_UNIT,
-                              conic_hybrid_ends_bytes(h->flags, &h->clusters[i])};
+                              hybrid_ends_bytes(h->flags, &h->clusters[i])};
 }
 
 /* --- order --- */
@@ -142,7 +142,7 @@ static const unsigned char *find_vertices(uint32_t flags, size_t n, const unsign
   return (const unsigned char *)next;
 }
 
-conic_hybrid_piece conic_hybrid_piece_in(uint32_t flags, const conic_hybrid_level *level, const unsigned char *chunk) {
+static conic_hybrid_piece hybrid_piece_in(uint32_t flags, const conic_hybrid_level *level, const unsigned char *chunk) {
   conic_hybrid_piece piece = {.material = NULL};
   if (level->kind == CONIC_HYBRID_SURFELS) {
     for (size_t k = 0; k < 12; k++)
@@ -161,8 +161,9 @@ conic_hybrid_piece conic_hybrid_piece_in(uint32_t flags, const conic_hybrid_leve
   return piece;
 }
 
-conic_hybrid_vertices conic_hybrid_ends_in(uint32_t flags, const conic_hybrid_cluster *cluster,
-                                           const unsigned char *chunk) {
+/* The parts of a chunk in memory, laid out by the level or the cluster. */
+static conic_hybrid_vertices hybrid_ends_in(uint32_t flags, const conic_hybrid_cluster *cluster,
+                                            const unsigned char *chunk) {
   conic_hybrid_vertices v;
   find_vertices(flags, cluster->n_slots, chunk, &v);
   return v;
@@ -178,7 +179,7 @@ const unsigned char *conic_hybrid_chunk(const conic_hybrid *h, uint32_t chunk) {
 }
 
 conic_hybrid_piece conic_hybrid_piece_of(const conic_hybrid *h, uint32_t level) {
-  return conic_hybrid_piece_in(h->flags, &h->levels[level], conic_hybrid_chunk(h, level));
+  return hybrid_piece_in(h->flags, &h->levels[level], conic_hybrid_chunk(h, level));
 }
 
 conic_hybrid_frame conic_hybrid_frame_of(const conic_hybrid *h, uint32_t cluster) {
@@ -186,8 +187,7 @@ conic_hybrid_frame conic_hybrid_frame_of(const conic_hybrid *h, uint32_t cluster
 }
 
 conic_hybrid_vertices conic_hybrid_ends_of(const conic_hybrid *h, uint32_t cluster) {
-  return conic_hybrid_ends_in(h->flags, &h->clusters[cluster],
-                              conic_hybrid_chunk(h, conic_hybrid_ends_chunk(h, cluster)));
+  return hybrid_ends_in(h->flags, &h->clusters[cluster], conic_hybrid_chunk(h, conic_hybrid_ends_chunk(h, cluster)));
 }
 
 /* --- as in a file --- */
@@ -195,7 +195,7 @@ conic_hybrid_vertices conic_hybrid_ends_of(const conic_hybrid *h, uint32_t clust
 void conic_hybrid_turn_chunk(const conic_hybrid *h, uint32_t chunk, unsigned char *bytes) {
   size_t n_bytes = (size_t)conic_hybrid_chunk_place(h, chunk).n_bytes, n_words = n_bytes / 4;
   if (chunk < h->n_levels && h->levels[chunk].kind == CONIC_HYBRID_TRIANGLES) {
-    conic_hybrid_piece piece = conic_hybrid_piece_in(h->flags, &h->levels[chunk], bytes);
+    conic_hybrid_piece piece = hybrid_piece_in(h->flags, &h->levels[chunk], bytes);
     if (piece.narrow) {
       size_t before = (size_t)((const unsigned char *)piece.narrow - bytes);
       conic_turn_words(bytes + before, (n_bytes - before) / 2, 2);
@@ -216,7 +216,7 @@ void conic_hybrid_seal_chunk(unsigned char *bytes, size_t n_bytes) {
 static const char *level_fault(const conic_hybrid *h, const conic_hybrid_level *level, const unsigned char *bytes) {
   if (level->kind == CONIC_HYBRID_SURFELS)
     return NULL;
-  conic_hybrid_piece piece = conic_hybrid_piece_in(h->flags, level, bytes);
+  conic_hybrid_piece piece = hybrid_piece_in(h->flags, level, bytes);
   for (size_t i = 0; i < level->count; i++) {
     for (int corner = 0; corner < 3; corner++)
       if (conic_hybrid_corner(&piece, i, corner) >= level->n_vertices)

@@ -20,9 +20,7 @@ uint32_t conic_hybrid_ends_chunk(const conic_hybrid *hybrid, uint32_t cluster);
 conic_hybrid_place conic_hybrid_chunk_place(const conic_hybrid *hybrid, uint32_t chunk);
 
 /* Bytes of a chunk of so many triangles or surfels, slots or borders. */
-uint64_t conic_hybrid_level_bytes(uint32_t flags, const conic_hybrid_level *level);
 uint64_t conic_hybrid_frame_bytes(const conic_hybrid_cluster *cluster);
-uint64_t conic_hybrid_ends_bytes(uint32_t flags, const conic_hybrid_cluster *cluster);
 
 /* Lists all chunks in the order in which they lie: frames, ends, the levels of nodes, and those of clusters, the
  * coarsest of every cluster before the next finer. The caller releases *order, on failure too. Errors: MEMORY. */
@@ -58,11 +56,6 @@ typedef struct conic_hybrid_frame {
   const uint32_t *stages;              /* of each slot: the last at which its vertex is still there */
   const conic_cluster_border *borders; /* by level, in the order of their edges */
 } conic_hybrid_frame;
-
-/* The parts of a chunk in memory, laid out by the level or the cluster. */
-conic_hybrid_piece conic_hybrid_piece_in(uint32_t flags, const conic_hybrid_level *level, const unsigned char *chunk);
-conic_hybrid_vertices conic_hybrid_ends_in(uint32_t flags, const conic_hybrid_cluster *cluster,
-                                           const unsigned char *chunk);
 
 /* The bytes and the parts of a chunk that is there. Of a model that was read as a whole all are, else those that are
  * held. */

@@ -1,4 +1,5 @@
 /* The hierarchy over the clusters. */
+#include "core/base/order.h"
 #include "lod/hybrid/model/hybrid_model.h"
 
 /* Halves like these need no more levels of nodes than they must. */
@@ -17,12 +18,7 @@ typedef struct cluster_place {
   uint32_t cluster;
 } cluster_place;
 
-static int compare_places(const void *a, const void *b) {
-  const cluster_place *first = a, *second = b;
-  if (first->at != second->at)
-    return first->at < second->at ? -1 : 1;
-  return (first->cluster > second->cluster) - (first->cluster < second->cluster);
-}
+CONIC_DEFINE_ORDER_BY_TWO(compare_places, cluster_place, at, cluster)
 
 static int longest_axis(const conic_hybrid_bound *bounds, const uint32_t *order, size_t n) {
   float widest = -1.0f;

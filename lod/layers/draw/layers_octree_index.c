@@ -1,4 +1,5 @@
 /* From a hierarchy's nodes to the entries that drawing knows, and reading its pages. */
+#include "core/base/order.h"
 #include "lod/layers/draw/layers_octree.h"
 
 /* A place of the index that is being made. */
@@ -13,12 +14,7 @@ typedef struct octree_places {
   size_t n, room;
 } octree_places;
 
-static int compare_octree_places(const void *a, const void *b) {
-  const octree_place *first = a, *second = b;
-  if (first->level != second->level)
-    return first->level < second->level ? -1 : 1;
-  return (first->key > second->key) - (first->key < second->key);
-}
+CONIC_DEFINE_ORDER_BY_TWO(compare_octree_places, octree_place, level, key)
 
 static octree_place *find_octree_place(const octree_places *places, uint64_t key, uint8_t level) {
   const octree_place wanted = {.key = key, .level = level};

@@ -42,19 +42,19 @@ int conic_layers_number_of(const char *name) {
   return -1;
 }
 
-size_t conic_layers_number_bytes(unsigned type) {
+static size_t layers_number_bytes(unsigned type) {
   return type < CONIC_LAYERS_NUMBERS ? layer_numbers[type].n_bytes : 0;
 }
 
 /* The bytes that an attribute takes in a record, behind its head. */
 static size_t record_bytes_of(const conic_layers_attribute *attribute) {
   if (attribute->kind == CONIC_LAYERS_VALUE)
-    return conic_layers_number_bytes(attribute->type);
+    return layers_number_bytes(attribute->type);
   return attribute->kind < CONIC_LAYERS_KINDS ? layer_kinds[attribute->kind].n_bytes : 0;
 }
 
 static unsigned attribute_streams(const conic_layers_attribute *attribute) {
-  return attribute->kind == CONIC_LAYERS_VALUE ? (unsigned)conic_layers_number_bytes(attribute->type)
+  return attribute->kind == CONIC_LAYERS_VALUE ? (unsigned)layers_number_bytes(attribute->type)
                                                : layer_kinds[attribute->kind].n_streams;
 }
 
@@ -166,7 +166,7 @@ int conic_layers_schema_value(const conic_layers_schema *schema, const char *nam
 }
 
 double conic_layers_number_get(const conic_layers_attribute *attribute, const void *from) {
-  size_t n_bytes = conic_layers_number_bytes(attribute->type);
+  size_t n_bytes = layers_number_bytes(attribute->type);
   uint64_t bits = conic_load_bits(from, n_bytes), sign = UINT64_C(1) << (8 * n_bytes - 1);
   double number = (double)bits;
   if (attribute->type == CONIC_LAYERS_FLOAT)
@@ -191,5 +191,5 @@ void conic_layers_number_put(const conic_layers_attribute *attribute, double val
     number = number > low ? number < high ? number : high : low; /* what is no number: the least */
     conic_store_64(bytes, (uint64_t)(int64_t)number);
   }
-  memcpy(to, bytes, conic_layers_number_bytes(attribute->type));
+  memcpy(to, bytes, layers_number_bytes(attribute->type));
 }

@@ -116,7 +116,6 @@ const char *conic_layers_schema_lay_out(conic_layers_schema *schema);
 /* "uint8" …, the name of a number's type; null for one that is none. And back; −1: none. */
 const char *conic_layers_number_name(unsigned type);
 int conic_layers_number_of(const char *name);
-size_t conic_layers_number_bytes(unsigned type);
 
 /* From numbers as they lie in a record, little-endian, to values and back. A value that the type does not hold becomes
  * the nearest that it does. */

@@ -37,14 +37,16 @@ static uint64_t get_folded(byte_planes *p, size_t i, const unsigned char *const 
   return p->before;
 }
 
-uint32_t conic_layers_code_length(const conic_layers_attribute *attribute, unsigned n_dropped, uint32_t most,
-                                  float length) {
+/* The code of a length, and back: the bits of the float, without the last `n_dropped`, above those of the least length.
+ */
+static uint32_t layers_code_length(const conic_layers_attribute *attribute, unsigned n_dropped, uint32_t most,
+                                   float length) {
   int64_t code = (int64_t)(((uint64_t)conic_bits_of_float(length) + (UINT64_C(1) << (n_dropped - 1))) >> n_dropped) -
                  (int64_t)attribute->offset;
   return (uint32_t)(code > 0 ? code < (int64_t)most ? code : (int64_t)most : 0);
 }
 
-float conic_layers_length_of(const conic_layers_attribute *attribute, unsigned n_dropped, uint32_t code) {
+static float layers_length_of(const conic_layers_attribute *attribute, unsigned n_dropped, uint32_t code) {
   uint64_t bits = ((uint64_t)attribute->offset + code) << n_dropped;
   return conic_float_of_bits(bits < 0x7f000000 ? (uint32_t)bits : 0x7f000000);
 }
@@ -104,8 +106,8 @@ static unsigned dropped_of_size(const conic_layers_attribute *attribute) {
 
 uint16_t conic_layers_size_as_read(const conic_layers_attribute *sizes, uint16_t size) {
   unsigned n_dropped = dropped_of_size(sizes);
-  uint32_t code = conic_layers_code_length(sizes, n_dropped, 255, conic_layers_size_of(size));
-  return (uint16_t)(conic_bits_of_float(conic_layers_length_of(sizes, n_dropped, code)) >> 16);
+  uint32_t code = layers_code_length(sizes, n_dropped, 255, conic_layers_size_of(size));
+  return (uint16_t)(conic_bits_of_float(layers_length_of(sizes, n_dropped, code)) >> 16);
 }
 
 uint16_t conic_layers_size_of_axes(float cutoff, const unsigned char *axes) {
@@ -125,7 +127,7 @@ static void split_sizes(const conic_layers_schema *schema, const conic_layers_at
   byte_planes p = {1, 0};
   for (size_t i = 0; i < n; i++) {
     float size = conic_float_of_bits((uint32_t)conic_layers_sample_at(samples, schema->sample_bytes, i)->size << 16);
-    put_folded(&p, conic_layers_code_length(attribute, dropped_of_size(attribute), 255, size), i, streams);
+    put_folded(&p, layers_code_length(attribute, dropped_of_size(attribute), 255, size), i, streams);
   }
 }
 
@@ -133,7 +135,7 @@ static void rejoin_sizes(const conic_layers_schema *schema, const conic_layers_a
                          const unsigned char *const *streams, unsigned char *samples) {
   byte_planes p = {1, 0};
   for (size_t i = 0; i < n; i++) {
-    float size = conic_layers_length_of(attribute, dropped_of_size(attribute), (uint32_t)get_folded(&p, i, streams));
+    float size = layers_length_of(attribute, dropped_of_size(attribute), (uint32_t)get_folded(&p, i, streams));
     conic_layers_sample_in(samples, schema->sample_bytes, i)->size = (uint16_t)(conic_bits_of_float(size) >> 16);
   }
 }
@@ -146,9 +148,9 @@ static void split_axes(const conic_layers_schema *schema, uint32_t i_attribute, 
   for (size_t i = 0; i < n; i++) {
     conic_layers_axes axes;
     memcpy(&axes, conic_layers_value_at(schema, samples, i, i_attribute), sizeof axes);
-    const uint32_t numbers[5] = {conic_layers_code_length(attribute, AXES_DROPPED, 65535, axes.length[0]),
-                                 conic_layers_code_length(attribute, AXES_DROPPED, 65535, axes.length[1]),
-                                 axes.normal[0], axes.normal[1], axes.turn};
+    const uint32_t numbers[5] = {layers_code_length(attribute, AXES_DROPPED, 65535, axes.length[0]),
+                                 layers_code_length(attribute, AXES_DROPPED, 65535, axes.length[1]), axes.normal[0],
+                                 axes.normal[1], axes.turn};
     for (int k = 0; k < 5; k++)
       put_folded(&p[k], numbers[k], i, streams + 2 * k);
   }
@@ -162,10 +164,10 @@ static void rejoin_axes(const conic_layers_schema *schema, uint32_t i_attribute,
     uint32_t numbers[5];
     for (int k = 0; k < 5; k++)
       numbers[k] = (uint32_t)get_folded(&p[k], i, streams + 2 * k);
-    const conic_layers_axes axes = {{conic_layers_length_of(attribute, AXES_DROPPED, numbers[0]),
-                                     conic_layers_length_of(attribute, AXES_DROPPED, numbers[1])},
-                                    {(uint16_t)numbers[2], (uint16_t)numbers[3]},
-                                    (uint16_t)numbers[4]};
+    const conic_layers_axes axes = {
+        {layers_length_of(attribute, AXES_DROPPED, numbers[0]), layers_length_of(attribute, AXES_DROPPED, numbers[1])},
+        {(uint16_t)numbers[2], (uint16_t)numbers[3]},
+        (uint16_t)numbers[4]};
     memcpy(conic_layers_value_in(schema, samples, i, i_attribute), &axes, sizeof axes);
   }
 }
