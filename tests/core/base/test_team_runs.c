@@ -18,9 +18,8 @@ static size_t first_uneven(const void *data, size_t i_item) {
   return i_item / LAST * (LAST * (LAST - 1) / 2) + i_item % LAST * (i_item % LAST - (i_item % LAST > 0)) / 2;
 }
 
-static void make_values(void *data, size_t i_item, int i_thread) {
+static void make_values(void *data, size_t i_item) {
   loops *l = data;
-  (void)i_thread;
   l->n_made++;
   l->by_item[i_item] = 0.5 * (double)i_item;
   for (size_t i = i_item * AN_ITEM; i < (i_item + 1) * AN_ITEM && i < VALUES; i++) {
@@ -29,9 +28,8 @@ static void make_values(void *data, size_t i_item, int i_thread) {
   }
 }
 
-static void make_uneven(void *data, size_t i_item, int i_thread) {
+static void make_uneven(void *data, size_t i_item) {
   loops *l = data;
-  (void)i_thread;
   for (size_t i = first_uneven(l, i_item); i < first_uneven(l, i_item + 1); i++)
     l->uneven[i] = (uint8_t)(i % 251 + 1);
 }

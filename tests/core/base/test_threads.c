@@ -60,9 +60,8 @@ typedef struct meeting {
   int n_threads;
 } meeting;
 
-static void await_all(void *data, size_t i_item, int i_thread) {
+static void await_all(void *data, size_t i_item) {
   (void)i_item;
-  (void)i_thread;
   meeting *all = data;
   atomic_fetch_add(&all->n_here, 1);
   for (int i = 0; atomic_load(&all->n_here) < all->n_threads && i < 10000; i++)
