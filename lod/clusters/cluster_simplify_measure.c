@@ -140,12 +140,92 @@ static void find_hits(conic_simplifier *s, uint32_t cluster) {
       find_hit(s, &s->points[i]);
 }
 
+/* --- fans --- */
+
+static const double *slot_at(const conic_simplifier *s, uint32_t slot) {
+  return s->vertices[s->number[s->mesh->adjacency->place[s->chains->slots[slot].vertices[0]]]].at;
+}
+
+/* Whether something between a border's ends is there at the stage before this one, and no more at this one. */
+static int loses_some(const conic_simplifier *s, const conic_cluster_border *border, uint32_t stage) {
+  uint32_t low = border->from < border->to ? border->from : border->to, high = low ^ border->from ^ border->to;
+  for (uint32_t slot = low + 1; slot < high; slot++)
+    if (s->chains->slots[slot].stage + 1 == stage)
+      return 1;
+  return 0;
+}
+
+/* The next vertex of a fan beside a cluster of an earlier stage, from a border's `from` to its `to`. */
+static uint32_t next_of_fan(const conic_simplifier *s, const conic_cluster_border *border, uint32_t stage,
+                            uint32_t slot) {
+  do
+    slot += border->from < border->to ? 1u : UINT32_MAX; /* backwards */
+  while (slot != border->to && s->chains->slots[slot].stage < stage);
+  return slot;
+}
+
+static const double *fan_middle(const conic_simplifier *s, const conic_cluster_border *border) {
+  return s->vertices[s->triangles[border->edge / 4].corners[(border->edge % 4 + 2) % 3]].at;
+}
+
+static double distance2_to_fan(const conic_simplifier *s, const conic_cluster_border *border, uint32_t stage,
+                               const double at[3]) {
+  double least2 = HUGE_VAL;
+  for (uint32_t slot = border->from; slot != border->to;) {
+    uint32_t next = next_of_fan(s, border, stage, slot);
+    double distance2 = conic_distance2_to_triangle(at, fan_middle(s, border), slot_at(s, slot), slot_at(s, next));
+    least2 = distance2 < least2 ? distance2 : least2;
+    slot = next;
+  }
+  return least2;
+}
+
+/* The nearest of the triangles that share a corner with this one, but for itself. */
+static double distance2_beside(const conic_simplifier *s, const conic_simplifier_triangle *t, const double at[3]) {
+  double least2 = HUGE_VAL;
+  for (int corner = 0; corner < 3; corner++)
+    for (uint32_t slot = conic_simplifier_living(s, s->vertices[t->corners[corner]].ring); slot != CONIC_NONE;
+         slot = conic_simplifier_after(s, slot)) {
+      const uint32_t *v = s->triangles[slot / 3].corners;
+      if (&s->triangles[slot / 3] != t)
+        least2 = fmin(
+            least2, conic_distance2_to_triangle(at, s->vertices[v[0]].at, s->vertices[v[1]].at, s->vertices[v[2]].at));
+    }
+  return least2;
+}
+
+/* The greater of `most2` and how far a place is whose triangle becomes a fan beside a cluster of an earlier stage. */
+static double farther_of_fans(const conic_simplifier *s, const conic_simplifier_triangle *t, const double at[3],
+                              double most2) {
+  size_t low = 0, high = s->n_borders, triangle = (size_t)(t - s->triangles);
+  while (low < high) {
+    size_t middle = low + (high - low) / 2;
+    if (s->borders[middle].of.edge / 4 < triangle)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  for (; low < s->n_borders && s->borders[low].of.edge / 4 == triangle; low++)
+    for (uint32_t stage = 0; stage < s->stage; stage++) {
+      const conic_cluster_border *border = &s->borders[low].of;
+      if (stage > 0 && !loses_some(s, border, stage))
+        continue;
+      double distance2 = distance2_to_fan(s, border, stage, at);
+      if (distance2 > most2)
+        distance2 = fmin(distance2, distance2_beside(s, t, at));
+      most2 = fmax(most2, distance2);
+    }
+  return most2;
+}
+
 static void measure_points(conic_simplifier *s, uint32_t cluster, const size_t *starts) {
   double most2 = s->errors2[cluster];
   for (size_t i = starts[cluster]; i < starts[cluster + 1]; i++) {
     const conic_simplifier_triangle *nearest;
     double distance2 = distance2_of(s, &s->points[i], s->contrasts ? 0.0 : most2, &nearest);
     most2 = distance2 > most2 ? distance2 : most2;
+    if (nearest)
+      most2 = farther_of_fans(s, nearest, s->points[i].at, most2);
     if (s->contrasts && nearest)
       conic_simplifier_note_change(s, cluster, &s->points[i], nearest);
   }
@@ -230,39 +310,19 @@ static double measure_back(const conic_simplifier *s, uint32_t cluster, double m
   return most;
 }
 
-/* --- fans --- */
+/* --- from fans to the mesh --- */
 
-static const double *slot_at(const conic_simplifier *s, uint32_t slot) {
-  return s->vertices[s->number[s->mesh->adjacency->place[s->chains->slots[slot].vertices[0]]]].at;
-}
-
-/* Whether something between a border's ends is there at the stage before this one, and no more at this one. */
-static int loses_some(const conic_simplifier *s, const conic_cluster_border *border, uint32_t stage) {
-  uint32_t low = border->from < border->to ? border->from : border->to, high = low ^ border->from ^ border->to;
-  for (uint32_t slot = low + 1; slot < high; slot++)
-    if (s->chains->slots[slot].stage + 1 == stage)
-      return 1;
-  return 0;
-}
-
-/* The fan that a border's triangle becomes beside a cluster of an earlier stage: the middles of its triangles and of
- * the edges between them. */
+/* The fan that a border's triangle becomes: the middles of its triangles and of the edges between them. */
 static double measure_fan(const conic_simplifier *s, const conic_cluster_border *border, uint32_t stage, double most) {
-  const conic_simplifier_triangle *t = &s->triangles[border->edge / 4];
-  const double *opposite = s->vertices[t->corners[(border->edge % 4 + 2) % 3]].at;
-  const double *corners[3] = {opposite, slot_at(s, border->from), NULL};
-  uint32_t step = border->from < border->to ? 1u : UINT32_MAX; /* backwards */
   uint32_t near = s->near[border->edge / 4][border->edge % 4];
-  for (uint32_t slot = border->from + step;; slot += step) {
-    if (slot != border->to && s->chains->slots[slot].stage < stage)
-      continue;
-    corners[2] = slot_at(s, slot);
+  for (uint32_t slot = border->from, next; slot != border->to; slot = next) {
+    next = next_of_fan(s, border, stage, slot);
+    const double *const corners[3] = {fan_middle(s, border), slot_at(s, slot), slot_at(s, next)};
+    if (slot != border->from)
+      most = farther(s, corners, 2, &near, most);
     most = farther(s, corners, 3, &near, most);
-    if (slot == border->to)
-      return most;
-    corners[1] = corners[2];
-    most = farther(s, corners, 2, &near, most);
   }
+  return most;
 }
 
 static double measure_fans(const conic_simplifier *s, uint32_t cluster, double most) {
