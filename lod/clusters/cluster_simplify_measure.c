@@ -224,7 +224,7 @@ static void measure_points(conic_simplifier *s, uint32_t cluster, const size_t *
     const conic_simplifier_triangle *nearest;
     double distance2 = distance2_of(s, &s->points[i], s->contrasts ? 0.0 : most2, &nearest);
     most2 = distance2 > most2 ? distance2 : most2;
-    if (nearest)
+    if (nearest && nearest->cluster == cluster)
       most2 = farther_of_fans(s, nearest, s->points[i].at, most2);
     if (s->contrasts && nearest)
       conic_simplifier_note_change(s, cluster, &s->points[i], nearest);
