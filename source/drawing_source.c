@@ -9,6 +9,7 @@
 #include "core/splats/repairs_log.h"
 #include "lod/mesh/mesh.h"
 #include "source/facing.h"
+#include "source/lean_drawing.h"
 #include "source/mesh_input.h"
 #include "source/moved_drawing.h"
 #include "source/source_kind.h"
@@ -26,6 +27,7 @@ typedef struct drawing_source {
   int has_moved;       /* something has moved, so that there is room for: */
   conic_splats moved;  /* the splats in their present places, with places and axes of its own */
   conic_triangles moved_triangles; /* the triangles in their present places, with places and normals of its own */
+  conic_lean_drawing lean;         /* for pictures with an error or a budget */
 } drawing_source;
 
 static int takes_drawing(const char *path, const conic_source_options *options) {
@@ -213,12 +215,16 @@ static conic_status dress(drawing_source *d, const conic_source_options *options
 static conic_status choose_in_drawing(conic_source *source, const conic_camera *camera,
                                       const conic_render_options *render, const conic_source_view *view) {
   drawing_source *d = (drawing_source *)source;
-  (void)render, (void)view;
   const conic_splats *splats = source->is_moved ? &d->moved : &d->splats;
   const conic_triangles *triangles = source->is_moved ? &d->moved_triangles : &d->triangles;
-  source->choice.drawing = (conic_drawing){splats, triangles};
+  const conic_drawing rest = {splats, triangles};
+  conic_drawing all = rest;
+  conic_status status = conic_facing_turn(source->context, &d->facing, camera, &all.splats);
+  source->choice.drawing = all;
   source->choice.is_all = 1;
-  return conic_facing_turn(source->context, &d->facing, camera, &source->choice.drawing.splats);
+  if (status != CONIC_OK || !(view->error_px > 0.0 || view->budget))
+    return status;
+  return conic_lean_choose(source, &all, !d->facing.n_dots && !source->is_moved, camera, render, &d->lean);
 }
 
 /* The range of all splats, vertices and normals that an input has. */
@@ -407,6 +413,7 @@ static void close_drawing(conic_source *source) {
   conic_facing_end(source->context, &d->facing);
   if (d->has_moved)
     conic_moved_end(source->context, &d->moved, &d->moved_triangles);
+  conic_lean_release(source->context, &d->lean);
   if (!d->is_lent)
     conic_splats_release(source->context, &d->splats);
   conic_memory_release(source->context, d->unstrided);
@@ -450,6 +457,20 @@ static void tell_drawing_rest(const conic_source *source, conic_facts *facts) {
   if (d->facing.n_dots)
     CONIC_ADD_FACTS(facts, CONIC_COUNT("dots", d->facing.n_dots));
   conic_facts_add_repairs(facts, &d->repairs);
+  if (source->view.error_px > 0.0 || source->view.budget)
+    conic_lean_tell(&d->lean, &source->choice, facts);
+}
+
+static void name_drawing_image(const conic_source *source, conic_image *image) {
+  conic_lean_name(&((const drawing_source *)source)->lean, &source->choice, image);
+}
+
+static const char *name_drawing_splat(const conic_source *source, uint32_t splat, uint32_t *number) {
+  const drawing_source *d = (const drawing_source *)source;
+  const size_t n_points = d->splats.count;
+  const uint32_t id = source->choice.ids ? source->choice.ids[splat] : splat;
+  *number = id < n_points ? id : id - (uint32_t)n_points;
+  return id < n_points ? "point" : "node";
 }
 
 const conic_source_kind conic_source_kind_drawing = {
@@ -462,6 +483,8 @@ const conic_source_kind conic_source_kind_drawing = {
     .move = move_drawing,
     .choose = choose_in_drawing,
     .windowing = &conic_source_windowing_choice,
+    .name_image = name_drawing_image,
+    .name_splat = name_drawing_splat,
     .input_of = find_drawing_input,
     .tell_rest = tell_drawing_rest,
     .list_all = list_drawing,

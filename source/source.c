@@ -327,7 +327,7 @@ conic_status conic_source_describe(const conic_source *source, const conic_rende
   if (kind->tell_primitives && !choice->is_all)
     kind->tell_primitives(source, *facts, &(*facts)->list[1].count);
   CONIC_ADD_FACTS(*facts, CONIC_END, CONIC_COUNT("clouds_culled", choice->n_culled));
-  if (kind->abilities & CONIC_SOURCE_CHOOSES && !choice->is_all)
+  if ((kind->abilities & CONIC_SOURCE_CHOOSES || source->view.error_px > 0.0 || source->view.budget) && !choice->is_all)
     CONIC_ADD_FACTS(*facts, CONIC_NUMBER("error_px", choice->error_px));
   if (kind->abilities & CONIC_SOURCE_CLUSTERS && !choice->is_all)
     CONIC_ADD_FACTS(*facts, CONIC_NUMBER("color_error", choice->color_error));

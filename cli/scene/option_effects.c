@@ -91,7 +91,7 @@ static void guess_source(const cli_session *session, cli_render_job *job) {
   int is_hybrid = (can & CONIC_SOURCE_CLUSTERS) != 0, is_mesh = job->opening.as == CONIC_AS_HYBRID;
   own->certain = when(can & CONIC_SOURCE_COMPOSITES, F(COMPOSITED)) | when(is_hybrid, F(HYBRID)) |
                  when(can & CONIC_SOURCE_STREAMS, F(LEVELS)) | when(can == CONIC_SOURCE_CHOOSES, F(NODES)) |
-                 when(can & CONIC_SOURCE_CHOOSES, F(CHOOSES)) | when(is_gaussian(session, job), F(GAUSSIANS));
+                 when(!(can & CONIC_SOURCE_COMPOSITES), F(CHOOSES)) | when(is_gaussian(session, job), F(GAUSSIANS));
   if (own->certain & F(COMPOSITED))
     own->certain |= when(job->shot.gaussians.profile == CONIC_PROFILE_EXACT, F(EXACT));
   for (int i = 0; i < job->n_inputs; i++)
@@ -140,7 +140,7 @@ static void know_source(cli_render_job *job) {
                    ~(when(!(can & CONIC_SOURCE_COMPOSITES), F(COMPOSITED)) |
                      when(!(can & CONIC_SOURCE_COMPOSITES) && job->opening.gaussians, F(GAUSSIANS)) |
                      when(!(can & CONIC_SOURCE_CLUSTERS), F(HYBRID)) | when(!(can & CONIC_SOURCE_STREAMS), F(LEVELS)) |
-                     when(can != CONIC_SOURCE_CHOOSES, F(NODES)) | when(!(can & CONIC_SOURCE_CHOOSES), F(CHOOSES)));
+                     when(can != CONIC_SOURCE_CHOOSES, F(NODES)) | when(can & CONIC_SOURCE_COMPOSITES, F(CHOOSES)));
   if (job->top.is_wanted && !job->is_shade_given && scale->has_colors) /* it is then drawn as it is */
     own->asked &= ~(F(LIT) | F(SHAPED));
   int is_chosen = job->shot.view.only_kind >= 0 || own->asked & CLI_CHOSEN; /* of a hybrid, which may be either kind */

@@ -195,7 +195,8 @@ CONIC_API void conic_source_settle(const conic_source *source, conic_render_opti
 /* How one picture is chosen. A source ignores what it cannot do. */
 typedef struct conic_source_view {
   size_t size;                     /* sizeof(conic_source_view), set by the init function */
-  double error_px;                 /* above 0: the greatest error on the screen; 0: full detail, a hybrid as built */
+  double error_px;                 /* above 0: the greatest error on the screen; 0: full detail, a hybrid as built.
+                                      Splats and triangles in memory are joined for it */
   uint64_t budget;                 /* or, where not 0: the least error that so many splats and triangles can give */
   int only_kind;                   /* -1, or the conic_hybrid_kind that all clusters are drawn as */
   int samples;                     /* N × N a pixel */
@@ -209,6 +210,9 @@ typedef struct conic_source_view {
                                       hybrids, for Gaussian scenes, and for an octree that keeps some and draws less
                                       than everything */
   double chance;                   /* as in conic_render_transparent */
+  int is_alone; /* of splats in memory, with an error: 1: they are joined for this picture alone; 0: by
+                   an octree, which is built for the first picture and serves the next ones, too */
+  int reserved_int;
 } conic_source_view;
 
 /* Full detail, either kind, one sample, colours by 2 steps. */

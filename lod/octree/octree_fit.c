@@ -52,10 +52,6 @@ static const size_t task_leaves = 32768, chunk_leaves = 8192;
 /* A node's error is so many times the height of its leaves' outlines over its plane, and so much of its size. */
 static const double height_weight = 2.0, size_weight = 0.25;
 
-/* Ellipses may be narrower than a splat that is estimated (core/estimate/estimate.h), for they bound and do not guess.
- */
-static const double least_ratio = 0.1;
-
 typedef struct fit_task {
   uint32_t i_node;
   conic_moments result;
@@ -128,8 +124,7 @@ static void add_dots(const conic_octree *octree, size_t begin, size_t end, const
   }
 }
 
-/* The mean normal, weighed by area; where normals cancel, the direction in which the points spread least. */
-static void find_moments_normal(const conic_moments *moments, double normal[3]) {
+void conic_moments_facing(const conic_moments *moments, double normal[3]) {
   double values[3], vectors[3][3];
   if (conic_dot(moments->normal, moments->normal) > 1e-4 * moments->area * moments->area) {
     memcpy(normal, moments->normal, 3 * sizeof *normal);
@@ -144,22 +139,26 @@ static double quadratic(const double m[6], const double a[3], const double b[3])
          a[2] * (m[2] * b[0] + m[4] * b[1] + m[5] * b[2]);
 }
 
+conic_ellipse conic_moments_shape(const conic_moments *moments, const double u[3], const double v[3]) {
+  const double covariance[3] = {quadratic(moments->scatter, u, u), quadratic(moments->scatter, u, v),
+                                quadratic(moments->scatter, v, v)};
+  return conic_ellipse_shape(covariance, CONIC_LEAST_NODE_RATIO);
+}
+
 /* Where the node is, and how its ellipse lies: the covariance in the tangent plane (Confetti Eq. 3, §4.3). */
 static void choose_frame(const fitter *f, const conic_moments *moments, size_t begin, size_t end, uint8_t *code,
                          conic_node_frame *frame) {
   const conic_octree *octree = f->octree;
   double normal[3], u[3], v[3], n[3], first[3];
   conic_vector_at(octree->leaves.position, begin, first);
-  find_moments_normal(moments, normal);
+  conic_moments_facing(moments, normal);
   conic_code_place(&octree->scale, moments->mean, first, code);
   conic_code_facing(normal, code);
   conic_code_basis(code, u, v, n);
-  const double covariance[3] = {quadratic(moments->scatter, u, u), quadratic(moments->scatter, u, v),
-                                quadratic(moments->scatter, v, v)};
-  conic_ellipse shape = conic_ellipse_shape(covariance, least_ratio);
+  conic_ellipse shape = conic_moments_shape(moments, u, v);
   if (end - begin <= CONIC_FEW_LEAVES)
     shape.ratio = f->loops.choose_ratio(&octree->leaves, begin, end, octree->scale.cutoff, moments->mean, u, v, &shape,
-                                        least_ratio);
+                                        CONIC_LEAST_NODE_RATIO);
   conic_code_axes(shape.major[0], shape.major[1], shape.ratio, code);
   conic_code_frame_in(&octree->scale, first, code, u, v, n, frame);
 }

@@ -51,3 +51,15 @@ void conic_moments_of_splat(const conic_splats *splats, size_t i, conic_moments 
 
 /* Adds the sums of another set; `sum` may be all zero. */
 void conic_moments_merge(conic_moments *sum, const conic_moments *more);
+
+/* The mean normal, weighed by area, of any length; where normals cancel, the direction in which the points spread
+ * least. */
+void conic_moments_facing(const conic_moments *moments, double normal[3]);
+
+/* Ellipses may be narrower than a splat that is estimated (core/estimate/estimate.h), for they bound and do not guess.
+ */
+#define CONIC_LEAST_NODE_RATIO 0.1
+
+/* The ellipse of the covariance in the plane of u and v (Confetti Eq. 3, §4.3). */
+conic_ellipse conic_moments_shape(const conic_moments *moments, const double u[3], const double v[3]);
+

@@ -18,6 +18,7 @@ typedef struct building {
   size_t *starts;
   conic_cluster_ways *ways;
   conic_hybrid_report *report;
+  int is_plain; /* without clusters: the levels of the whole alone, of a mesh that stays the caller's */
   size_t n_own; /* faces; those behind them lie beside the model */
   size_t n_own_clusters;
 } building;
@@ -113,6 +114,20 @@ static conic_status group_kept(conic_context *context, const conic_kept_splats *
 
 /* --- clusters --- */
 
+/* In place of clusters: pieces in the order of the faces, which all threads measure. */
+static conic_status cut_pieces(building *b) {
+  enum { PIECE_FACES = 2048 };
+  conic_mesh_clusters *pieces = &b->clusters;
+  size_t n = 0;
+  if (conic_memory_allocate_these(b->context, CONIC_ROOM(pieces->of_face, b->flat.count),
+                                  CONIC_ZEROED(pieces->is_gathered, b->flat.count / PIECE_FACES + 1)) != CONIC_OK)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < b->flat.count; i++)
+    pieces->of_face[i] = b->adjacency.side[i] ? (uint32_t)(n++ / PIECE_FACES) : CONIC_NO_CLUSTER;
+  pieces->n_clusters = pieces->n_first = (n + PIECE_FACES - 1) / PIECE_FACES;
+  return CONIC_OK;
+}
+
 /* The share of the area where none is given: that of some 2000 faces if all are of one size; for small meshes a
  * fiftieth. */
 static double most_area_of(const building *b) {
@@ -152,7 +167,8 @@ static conic_status find_clusters(building *b) {
   if (status == CONIC_OK)
     part_from_others(b);
   if (status == CONIC_OK)
-    status = conic_mesh_clusters_find(b->context, &mesh->mesh, &b->adjacency, &options, &b->clusters);
+    status = b->is_plain ? cut_pieces(b)
+                         : conic_mesh_clusters_find(b->context, &mesh->mesh, &b->adjacency, &options, &b->clusters);
   if (status == CONIC_OK && b->kept)
     status = group_kept(b->context, b->kept, &b->clusters);
   if (status == CONIC_OK)
@@ -265,8 +281,12 @@ static conic_status build_hybrid(building *b, conic_triangles *mesh, conic_hybri
     return status;
   report_oddities(b, mesh);
   b->report->cluster_seconds = conic_seconds_now() - start;
-  conic_ways_job ways = {
-      .context = b->context, .mesh = &b->mesh, .options = b->options, .n_clusters = b->n_own_clusters, .ways = b->ways};
+  conic_ways_job ways = {.context = b->context,
+                         .mesh = &b->mesh,
+                         .options = b->options,
+                         .is_plain = b->is_plain,
+                         .n_clusters = b->n_own_clusters,
+                         .ways = b->ways};
   status = conic_find_ways(&ways);
   b->report->sample_seconds = ways.sample_seconds;
   b->report->simplify_seconds = ways.simplify_seconds;
@@ -278,25 +298,27 @@ static conic_status build_hybrid(building *b, conic_triangles *mesh, conic_hybri
 }
 
 /* All of a mesh, or its first n_own faces; its last ones may stand for splats. */
-static conic_status build_some(conic_context *context, conic_triangles *mesh, size_t n_own,
-                               const conic_kept_splats *kept, const conic_hybrid_options *given, conic_hybrid **hybrid,
-                               conic_hybrid_report *report) {
+static conic_status build_some(building b, conic_triangles *mesh, const conic_hybrid_options *given,
+                               conic_hybrid **hybrid, conic_hybrid_report *report) {
+  conic_context *context = b.context;
   conic_hybrid_report ignored;
   conic_hybrid_options options;
-  building b = {
-      .context = context, .options = &options, .kept = kept, .report = report ? report : &ignored, .n_own = n_own};
+  b.options = &options;
+  b.report = report ? report : &ignored;
   *hybrid = NULL;
   memset(b.report, 0, sizeof *b.report);
   conic_status status = conic_triangles_check_own(context, "the mesh", mesh);
   if (status != CONIC_OK)
     return status;
   status = take_options(context, given, &options);
+  options.has_single_levels |= b.is_plain;
   if (status == CONIC_OK)
     status = conic_triangles_check(context, mesh, "the mesh");
   if (status == CONIC_OK)
     status = build_hybrid(&b, mesh, hybrid);
   release_building(&b);
-  conic_triangles_release(context, mesh);
+  if (!b.is_plain)
+    conic_triangles_release(context, mesh);
   if (status != CONIC_OK) {
     conic_hybrid_destroy(*hybrid);
     *hybrid = NULL;
@@ -306,17 +328,22 @@ static conic_status build_some(conic_context *context, conic_triangles *mesh, si
 
 conic_status conic_hybrid_build(conic_context *context, conic_triangles *mesh, const conic_hybrid_options *options,
                                 conic_hybrid **hybrid, conic_hybrid_report *report) {
-  return build_some(context, mesh, SIZE_MAX, NULL, options, hybrid, report);
+  return build_some((building){.context = context, .n_own = SIZE_MAX}, mesh, options, hybrid, report);
+}
+
+conic_status conic_hybrid_build_levels(conic_context *context, const conic_triangles *mesh, conic_hybrid **hybrid) {
+  conic_triangles lent = *mesh;
+  return build_some((building){.context = context, .n_own = SIZE_MAX, .is_plain = 1}, &lent, NULL, hybrid, NULL);
 }
 
 conic_status conic_hybrid_build_part(conic_context *context, conic_triangles *mesh, size_t n_own,
                                      const conic_hybrid_options *options, conic_hybrid **hybrid,
                                      conic_hybrid_report *report) {
-  return build_some(context, mesh, n_own, NULL, options, hybrid, report);
+  return build_some((building){.context = context, .n_own = n_own}, mesh, options, hybrid, report);
 }
 
 conic_status conic_hybrid_build_with(conic_context *context, conic_triangles *mesh, const conic_kept_splats *kept,
                                      const conic_hybrid_options *options, conic_hybrid **hybrid,
                                      conic_hybrid_report *report) {
-  return build_some(context, mesh, SIZE_MAX, kept, options, hybrid, report);
+  return build_some((building){.context = context, .kept = kept, .n_own = SIZE_MAX}, mesh, options, hybrid, report);
 }

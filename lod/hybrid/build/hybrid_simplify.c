@@ -149,7 +149,8 @@ static void measure_whole(void *data, size_t i) {
 static conic_status simplify_whole(whole_job *job) {
   conic_ways_job *ways = job->ways;
   uint32_t n = (uint32_t)ways->mesh->clusters->n_clusters, n_pieces;
-  conic_status status = conic_region_begin(job->simplifier, &job->chains, 0, n, MOST_OF_WHOLE, &ways->whole);
+  size_t most = ways->is_plain ? SIZE_MAX : MOST_OF_WHOLE;
+  conic_status status = conic_region_begin(job->simplifier, &job->chains, 0, n, most, &ways->whole);
   do {
     if (status == CONIC_OK)
       status = conic_region_advance(job->simplifier, &n_pieces);

@@ -1,0 +1,227 @@
+#include "source/lean_drawing.h"
+
+#include "conic/transparency.h"
+#include "core/base/base.h"
+#include "lod/hybrid/build/hybrid_build.h"
+#include "lod/planner/plan.h"
+
+/* What is chosen for one picture. */
+typedef struct lean_choosing {
+  conic_source *source;
+  const conic_drawing *all;
+  const conic_camera *camera;
+  const conic_render_options *render;
+  conic_lean_drawing *lean;
+  conic_drawing drawing;
+  const uint32_t *ids;
+  size_t n_culled;
+  double reached_px; /* the greatest error of what is chosen */
+  conic_status status;
+} lean_choosing;
+
+/* --- making --- */
+
+static conic_status need_octree(const lean_choosing *c) {
+  conic_lean_drawing *lean = c->lean;
+  conic_context *context = c->source->context;
+  conic_octree_options options;
+  conic_splats copy = {0};
+  if (lean->octree && lean->cutoff == c->render->kernel.cutoff)
+    return CONIC_OK;
+  double start = conic_seconds_now();
+  conic_selection_release(context, &lean->nodes);
+  conic_octree_destroy(lean->octree);
+  lean->octree = NULL;
+  lean->cutoff = c->render->kernel.cutoff;
+  conic_octree_options_init(&options);
+  options.cutoff = lean->cutoff;
+  memcpy(copy.origin, c->all->splats->origin, sizeof copy.origin);
+  conic_status status = conic_splats_append(context, &copy, c->all->splats);
+  if (status == CONIC_OK)
+    status = conic_octree_build(context, &copy, &options, &lean->octree);
+  lean->build_seconds += conic_seconds_now() - start;
+  return status;
+}
+
+static conic_status need_levels(const lean_choosing *c) {
+  conic_lean_drawing *lean = c->lean;
+  if (lean->levels)
+    return CONIC_OK;
+  double start = conic_seconds_now();
+  conic_status status = conic_hybrid_build_levels(c->source->context, c->all->triangles, &lean->levels);
+  lean->build_seconds += conic_seconds_now() - start;
+  return status;
+}
+
+/* --- choosing --- */
+
+static void raise_reached(lean_choosing *c, double error_px) {
+  c->reached_px = error_px > c->reached_px ? error_px : c->reached_px;
+}
+
+static conic_status choose_cells(lean_choosing *c, double error_px) {
+  conic_lean_drawing *lean = c->lean;
+  double start = conic_seconds_now();
+  conic_screen_cells_release(c->source->context, &lean->cells);
+  conic_status status =
+      conic_screen_cells_find(c->source->context, c->all->splats, c->camera, c->render, error_px, &lean->cells);
+  lean->build_seconds += conic_seconds_now() - start;
+  if (status != CONIC_OK || !lean->cells.n_joined)
+    return status;
+  c->drawing.splats = &lean->cells.splats;
+  c->ids = lean->cells.ids;
+  c->n_culled += lean->cells.n_culled;
+  raise_reached(c, error_px);
+  return CONIC_OK;
+}
+
+static conic_status choose_nodes(lean_choosing *c, double error_px, uint64_t budget) {
+  conic_lean_drawing *lean = c->lean;
+  conic_selection_options options;
+  conic_selection_options_init(&options);
+  options.error_px = error_px;
+  options.budget = budget;
+  conic_status status = need_octree(c);
+  if (status == CONIC_OK)
+    status = conic_octree_select(lean->octree, c->camera, c->render, &options, &lean->nodes);
+  if (status != CONIC_OK || !lean->nodes.n_inner)
+    return status;
+  c->drawing.splats = &lean->nodes.splats;
+  c->ids = lean->nodes.ids;
+  c->n_culled += lean->nodes.n_culled;
+  raise_reached(c, lean->nodes.error_px);
+  return CONIC_OK;
+}
+
+/* All triangles stay where none of the simpler levels keeps the error. */
+static conic_status choose_levels(lean_choosing *c, double error_px, uint64_t budget) {
+  conic_lean_drawing *lean = c->lean;
+  conic_hybrid_view view;
+  conic_hybrid_view_init(&view);
+  view.error_px = budget ? 0.0 : error_px;
+  view.budget = budget;
+  view.only_kind = CONIC_HYBRID_TRIANGLES;
+  view.color_error = c->source->view.color_error;
+  conic_status status = need_levels(c);
+  if (status == CONIC_OK)
+    status = conic_hybrid_select(lean->levels, c->camera, c->render, &view, &lean->triangles);
+  const conic_hybrid_selection *chosen = &lean->triangles;
+  if (status != CONIC_OK || !chosen->n_simpler || (!budget && !(chosen->error_px <= error_px)))
+    return status;
+  c->drawing.triangles = &lean->triangles.triangles;
+  c->n_culled += chosen->n_culled;
+  raise_reached(c, chosen->error_px);
+  return CONIC_OK;
+}
+
+/* For an error; or, of splats or triangles alone, for a budget. */
+static conic_status choose_parts(lean_choosing *c, double error_px, uint64_t budget) {
+  conic_status status = CONIC_OK;
+  c->drawing = *c->all;
+  c->ids = NULL;
+  c->n_culled = 0;
+  c->reached_px = 0.0;
+  if (c->all->splats->count)
+    status = c->lean->is_cut ? choose_cells(c, error_px) : choose_nodes(c, error_px, budget);
+  if (status == CONIC_OK && c->all->triangles->count && !c->source->is_moved)
+    status = choose_levels(c, error_px, budget);
+  return status;
+}
+
+static uint64_t count_parts(void *data, double error_px, double *reached_px) {
+  lean_choosing *c = data;
+  if (c->status == CONIC_OK)
+    c->status = choose_parts(c, error_px, 0);
+  *reached_px = c->reached_px > 0.0 ? c->reached_px : error_px;
+  return c->drawing.splats->count + c->drawing.triangles->count;
+}
+
+static conic_status choose_for_budget(lean_choosing *c, uint64_t budget) {
+  double error_px;
+  if (!c->lean->is_cut && (!c->all->splats->count || !c->all->triangles->count) && !c->source->is_moved)
+    return choose_parts(c, 0.0, budget);
+  if (!conic_plan_fit(count_parts, c, budget, 0.0, &error_px) && c->status == CONIC_OK)
+    return conic_fail(c->source->context, CONIC_ERROR_ARGUMENT, "%s: no choice of so few splats and triangles",
+                      c->source->name);
+  return c->status == CONIC_OK ? choose_parts(c, error_px, 0) : c->status;
+}
+
+/* What stands for several has no opacity that tells how much light it lets through. */
+static conic_status settle_transparency(conic_source *source, const conic_drawing *all) {
+  if (source->view.transparency && conic_drawing_is_transparent(all))
+    return conic_fail(source->context, CONIC_ERROR_UNSUPPORTED,
+                      "%s: what an error or a budget leaves keeps no opacities: transparency is of all there is",
+                      source->name);
+  source->view.transparency = CONIC_TRANSPARENCY_NONE;
+  return CONIC_OK;
+}
+
+static void tell_choice(const lean_choosing *c) {
+  conic_log(c->source->context, CONIC_LOG_INFO,
+            "%s: %zu of %zu splats%s and %zu of %zu triangles keep %.3g pixels; that took %.0f ms", c->source->name,
+            c->drawing.splats->count, c->all->splats->count, c->lean->is_cut ? ", by cells," : "",
+            c->drawing.triangles->count, c->all->triangles->count, c->reached_px, 1e3 * c->lean->build_seconds);
+}
+
+conic_status conic_lean_choose(conic_source *source, const conic_drawing *all, int is_fixed, const conic_camera *camera,
+                               const conic_render_options *render, conic_lean_drawing *lean) {
+  const conic_source_view *view = &source->view;
+  lean_choosing c = {.source = source, .all = all, .camera = camera, .render = render, .lean = lean, .drawing = *all};
+  conic_status status = settle_transparency(source, all);
+  lean->is_cut = !is_fixed || (view->is_alone && !view->budget);
+  lean->build_seconds = 0.0;
+  if (status == CONIC_OK && view->error_px > 0.0)
+    status = choose_parts(&c, view->error_px, 0);
+  else if (status == CONIC_OK && view->budget < all->splats->count + all->triangles->count)
+    status = choose_for_budget(&c, view->budget);
+  if (status != CONIC_OK)
+    return status;
+  if (lean->build_seconds > 0.0)
+    tell_choice(&c);
+  conic_source_choice *choice = &source->choice;
+  choice->drawing = c.drawing;
+  choice->ids = c.ids;
+  choice->n_culled = c.n_culled;
+  choice->error_px = c.reached_px;
+  lean->n_ids = all->splats->count;
+  if (c.ids && !lean->is_cut) {
+    conic_octree_info info;
+    conic_octree_describe(lean->octree, &info);
+    lean->n_ids += info.n_nodes;
+  }
+  choice->is_all = c.drawing.splats == all->splats && c.drawing.triangles == all->triangles;
+  return CONIC_OK;
+}
+
+/* --- what it is called --- */
+
+/* Splats by their index in all, or, of a node, from their number on; triangles come after these. */
+void conic_lean_name(const conic_lean_drawing *lean, const conic_source_choice *choice, conic_image *image) {
+  uint32_t *ids = image->planes[CONIC_PLANE_ID];
+  const size_t n_splats = choice->drawing.splats->count, n = (size_t)image->width * (size_t)image->height;
+  for (size_t i = 0; ids && i < n; i++)
+    if (ids[i] < n_splats)
+      ids[i] = choice->ids ? choice->ids[ids[i]] : ids[i];
+    else if (ids[i] != CONIC_NO_ID)
+      ids[i] += (uint32_t)(lean->n_ids - n_splats);
+}
+
+void conic_lean_tell(const conic_lean_drawing *lean, const conic_source_choice *choice, conic_facts *facts) {
+  const int has_triangles = lean->levels && choice->drawing.triangles == &lean->triangles.triangles;
+  CONIC_ADD_FACTS(facts, CONIC_OBJECT("lean"),
+                  conic_fact_text(CONIC_FACT_TEXT, "splats", "%s",
+                                  !choice->ids   ? "all"
+                                  : lean->is_cut ? "cells"
+                                                 : "octree"),
+                  conic_fact_text(CONIC_FACT_TEXT, "triangles", "%s", has_triangles ? "levels" : "all"),
+                  CONIC_NUMBER("ms", 1e3 * lean->build_seconds), CONIC_END);
+}
+
+void conic_lean_release(conic_context *context, conic_lean_drawing *lean) {
+  conic_selection_release(context, &lean->nodes);
+  conic_screen_cells_release(context, &lean->cells);
+  conic_hybrid_selection_release(context, &lean->triangles);
+  conic_octree_destroy(lean->octree);
+  conic_hybrid_destroy(lean->levels);
+  memset(lean, 0, sizeof *lean);
+}

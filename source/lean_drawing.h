@@ -1,0 +1,30 @@
+/* Fewer splats and triangles than a drawing has, within an error or a budget, of what is made of it in memory. */
+#ifndef CONIC_LEAN_DRAWING_H
+#define CONIC_LEAN_DRAWING_H
+
+#include "lod/octree/screen_cells.h"
+#include "source/source_kind.h"
+
+/* What was made, and is kept for further pictures. Zero before the first. */
+typedef struct conic_lean_drawing {
+  float cutoff; /* of the octree */
+  conic_octree *octree;
+  conic_selection nodes;
+  conic_screen_cells cells;
+  conic_hybrid *levels; /* of the triangles */
+  conic_hybrid_selection triangles;
+  int is_cut;           /* the last picture's splats are of cells, not of the octree */
+  size_t n_ids;         /* its triangles are called by numbers from here on */
+  double build_seconds; /* of what was made for it */
+} conic_lean_drawing;
+
+/* Fills in the choice for a picture with an error or a budget. Where nothing is left out, all is drawn, in its order.
+ * `is_fixed`: the drawing is the same in all pictures. Errors: ARGUMENT (a budget that is too small), MEMORY,
+ * CANCELLED, UNSUPPORTED (transparency). */
+conic_status conic_lean_choose(conic_source *source, const conic_drawing *all, int is_fixed, const conic_camera *camera,
+                               const conic_render_options *render, conic_lean_drawing *lean);
+void conic_lean_name(const conic_lean_drawing *lean, const conic_source_choice *choice, conic_image *image);
+void conic_lean_tell(const conic_lean_drawing *lean, const conic_source_choice *choice, conic_facts *facts);
+void conic_lean_release(conic_context *context, conic_lean_drawing *lean);
+
+#endif
