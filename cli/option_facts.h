@@ -85,5 +85,9 @@ typedef unsigned long long cli_facts; /* a set of them */
   (CLI_FACT(TRANSPARENT) | CLI_FACT(MATTES) | CLI_FACT(DEEP) | CLI_FACT(PROGRESSIVE) | CLI_FACT(MASKED) |              \
    CLI_FACT(ACCUMULATED))
 #define CLI_WRITES_MORE (CLI_FACT(DEEP) | CLI_FACT(SHOWN) | CLI_FACT(PROGRESSIVE) | CLI_FACT(BACKDROP))
+/* More pictures than one of the scene, or of what lights it. */
+#define CLI_DRAWS_MORE                                                                                                 \
+  (CLI_FACT(TURNTABLE) | CLI_FACT(EVERY_VIEW) | CLI_FACT(STEREO) | CLI_FACT(PROJECTED) | CLI_FACT(REPEATED) |          \
+   CLI_FACT(MASKED) | CLI_SAMPLES)
 #define CLI_CHOSEN (CLI_FACT(ERROR) | CLI_FACT(BUDGET))
 #define CLI_SAMPLES (CLI_FACT(ACCUMULATED) | CLI_FACT(SAMPLE))

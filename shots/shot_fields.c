@@ -167,7 +167,7 @@ static void set_view(void *value) {
 #define S conic_source_view
 static const conic_shot_row view_list[] = {
     SIZE_ROW,
-    {CONIC_ROW_DOUBLE, AT(error_px), "px", "how far off the picture of a hierarchy may be; 0: all is drawn",
+    {CONIC_ROW_DOUBLE, AT(error_px), "px", "how far off the picture may be; 0: all is drawn",
      IN(0, 1e9)},
     {CONIC_ROW_UINT64, AT(budget), NULL, "or the best of so many splats and triangles", IN(0, 4294967294.0)},
     {CONIC_ROW_INT, AT(only_kind), NULL, "of a hybrid: 0 triangles alone, 1 surfels alone, -1 as it was built",
@@ -180,7 +180,9 @@ static const conic_shot_row view_list[] = {
     {CONIC_ROW_TRUTH, AT(tolerates_damage), NULL, "what is damaged is drawn coarser", .is_no_key = 1},
     {CONIC_ROW_DOUBLE, AT(color_error), "steps", "of a hybrid: how far off its colours may be", IN(1e-9, 1e9)},
     {CONIC_ROW_WORD, AT(transparency), NULL, "how light comes through", transparency_word},
-    {CONIC_ROW_DOUBLE, AT(chance), NULL, "of transparency by chance: which", IN(0, 1)}};
+    {CONIC_ROW_DOUBLE, AT(chance), NULL, "of transparency by chance: which", IN(0, 1)},
+    {CONIC_ROW_TRUTH, AT(is_alone), NULL, "what is left out for an error is found for this picture alone"},
+    RESERVED(reserved_int)};
 TABLE(view, set_view, NULL)
 #undef S
 

@@ -119,10 +119,12 @@ static void plain_drawing(conic_shot *shot, const conic_shot *standard, unsigned
   }
   if (shot->camera.lens == CONIC_LENS_NONE)
     memset(shot->camera.distortion, 0, sizeof shot->camera.distortion);
-  if (!(abilities & CONIC_SOURCE_CLUSTERS) || !(shot->view.error_px > 0.0))
+  if ((abilities && !(abilities & CONIC_SOURCE_CLUSTERS)) || !(shot->view.error_px > 0.0))
     shot->view.color_error = standard->view.color_error;
   if (!(abilities & CONIC_SOURCE_CLUSTERS))
     shot->view.only_kind = standard->view.only_kind;
+  if (abilities || !(shot->view.error_px > 0.0))
+    shot->view.is_alone = 0;
   if (shot->view.transparency != CONIC_TRANSPARENCY_CHANCE)
     shot->view.chance = standard->view.chance;
   if (shot->gaussians.profile != CONIC_PROFILE_EXACT)

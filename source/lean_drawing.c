@@ -2,6 +2,7 @@
 
 #include "conic/transparency.h"
 #include "core/base/base.h"
+#include "core/image/viewpoint.h"
 #include "lod/hybrid/build/hybrid_build.h"
 #include "lod/planner/plan.h"
 
@@ -43,12 +44,41 @@ static conic_status need_octree(const lean_choosing *c) {
   return status;
 }
 
-static conic_status need_levels(const lean_choosing *c) {
+/* The length that is so many pixels wherever the mesh is; 0: it reaches the near distance. */
+static double find_most_error(const lean_choosing *c, double error_px) {
+  double low[3], high[3], place[3], p[3], extent[3];
+  conic_viewpoint from;
+  conic_triangles_bounds(c->all->triangles, low, high);
+  conic_viewpoint_init(&from, c->camera, low, 0.0);
+  for (int axis = 0; axis < 3; axis++) {
+    extent[axis] = high[axis] - low[axis];
+    place[axis] = 0.5 * extent[axis];
+  }
+  conic_viewpoint_move(&from, place, p);
+  double radius = 0.5 * conic_length(extent), z = p[2] - radius;
+  double focal_px = c->camera->fx > c->camera->fy ? c->camera->fx : c->camera->fy;
+  return z > c->render->near_z ? error_px * z * z / (focal_px * (conic_length(p) + radius)) : 0.0;
+}
+
+/* For this picture alone, or once. */
+static conic_status need_levels(const lean_choosing *c, double error_px) {
+  const double slack = 1.25; /* spheres about the mesh differ */
   conic_lean_drawing *lean = c->lean;
-  if (lean->levels)
+  conic_hybrid_options options;
+  double most_error = lean->is_alone ? slack * find_most_error(c, error_px) : 0.0;
+  if (lean->levels && !lean->is_alone && !lean->are_levels_cut)
     return CONIC_OK;
   double start = conic_seconds_now();
-  conic_status status = conic_hybrid_build_levels(c->source->context, c->all->triangles, &lean->levels);
+  conic_hybrid_selection_release(c->source->context, &lean->triangles);
+  conic_hybrid_destroy(lean->levels);
+  lean->levels = NULL;
+  lean->are_levels_cut = lean->is_alone;
+  if (lean->is_alone && !(most_error > 0.0))
+    return CONIC_OK;
+  conic_hybrid_options_init(&options);
+  options.cutoff = c->render->kernel.cutoff;
+  conic_status status =
+      conic_hybrid_build_lent(c->source->context, c->all->triangles, &options, most_error, &lean->levels);
   lean->build_seconds += conic_seconds_now() - start;
   return status;
 }
@@ -93,24 +123,30 @@ static conic_status choose_nodes(lean_choosing *c, double error_px, uint64_t bud
   return CONIC_OK;
 }
 
+/* Where clusters of several levels meet, triangles may be off by so many times what the model states
+ * (docs/reference/hybrid.md). */
+static const double fitted_share = 1.2;
+
 /* All triangles stay where none of the simpler levels keeps the error. */
 static conic_status choose_levels(lean_choosing *c, double error_px, uint64_t budget) {
   conic_lean_drawing *lean = c->lean;
+  const double share = lean->is_alone ? 1.0 : fitted_share;
   conic_hybrid_view view;
   conic_hybrid_view_init(&view);
-  view.error_px = budget ? 0.0 : error_px;
+  view.error_px = budget ? 0.0 : error_px / share;
   view.budget = budget;
   view.only_kind = CONIC_HYBRID_TRIANGLES;
   view.color_error = c->source->view.color_error;
-  conic_status status = need_levels(c);
-  if (status == CONIC_OK)
-    status = conic_hybrid_select(lean->levels, c->camera, c->render, &view, &lean->triangles);
+  conic_status status = need_levels(c, error_px);
+  if (status != CONIC_OK || !lean->levels)
+    return status;
+  status = conic_hybrid_select(lean->levels, c->camera, c->render, &view, &lean->triangles);
   const conic_hybrid_selection *chosen = &lean->triangles;
-  if (status != CONIC_OK || !chosen->n_simpler || (!budget && !(chosen->error_px <= error_px)))
+  if (status != CONIC_OK || !chosen->n_simpler || (!budget && !(share * chosen->error_px <= error_px)))
     return status;
   c->drawing.triangles = &lean->triangles.triangles;
   c->n_culled += chosen->n_culled;
-  raise_reached(c, chosen->error_px);
+  raise_reached(c, share * chosen->error_px);
   return CONIC_OK;
 }
 
@@ -168,7 +204,8 @@ conic_status conic_lean_choose(conic_source *source, const conic_drawing *all, i
   const conic_source_view *view = &source->view;
   lean_choosing c = {.source = source, .all = all, .camera = camera, .render = render, .lean = lean, .drawing = *all};
   conic_status status = settle_transparency(source, all);
-  lean->is_cut = !is_fixed || (view->is_alone && !view->budget);
+  lean->is_alone = view->is_alone && !view->budget;
+  lean->is_cut = lean->is_alone || !is_fixed;
   lean->build_seconds = 0.0;
   if (status == CONIC_OK && view->error_px > 0.0)
     status = choose_parts(&c, view->error_px, 0);

@@ -11,9 +11,11 @@ typedef struct conic_lean_drawing {
   conic_octree *octree;
   conic_selection nodes;
   conic_screen_cells cells;
-  conic_hybrid *levels; /* of the triangles */
+  conic_hybrid *levels; /* of the triangles; null where none would do */
+  int are_levels_cut;   /* they are for one picture */
   conic_hybrid_selection triangles;
-  int is_cut;           /* the last picture's splats are of cells, not of the octree */
+  int is_alone;         /* the last picture's triangles are of levels for it alone, … */
+  int is_cut;           /* … its splats of cells, not of the octree */
   size_t n_ids;         /* its triangles are called by numbers from here on */
   double build_seconds; /* of what was made for it */
 } conic_lean_drawing;

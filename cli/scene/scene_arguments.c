@@ -41,6 +41,7 @@ void cli_scene_defaults(cli_render_job *job) {
   conic_patches_options_init(&job->patches);
   conic_layers_access_init(&job->access);
   conic_source_view_init(&job->shot.view);
+  job->shot.view.is_alone = 1; /* unless a check finds more pictures */
   conic_coloring_options_init(&job->coloring);
   job->coloring.by = NULL;
   job->opening.patches = &job->patches;

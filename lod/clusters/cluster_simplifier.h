@@ -95,6 +95,7 @@ struct conic_simplifier {
   size_t n_last, n_wanted;          /* triangles: of the last stage, and of the next */
   int is_to_fit, is_to_take, is_over;
   int is_one;                     /* the region is simplified as one cluster in pieces */
+  double most_error;              /* of what is one; 0: any */
   conic_cluster_levels *levels;   /* of the region's clusters */
   conic_simplifier_spoke *spokes; /* room for those of any vertex */
   void *memory[18];               /* all of these, but for the borders */

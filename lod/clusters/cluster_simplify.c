@@ -98,26 +98,27 @@ static void fill_queue(conic_simplifier *s) {
 
 /* A region that is one has levels close together, so that one of them is about as large as is asked for. */
 static size_t wanted_after(const conic_simplifier *s) {
-  if (s->is_one)
+  if (s->is_one && !(s->most_error > 0.0))
     return s->n_last - (s->n_last + 5) / 6;
   return s->mesh->kept ? s->n_last - s->n_last / 3 : s->n_last / 2;
 }
 
 conic_status conic_region_begin(conic_simplifier *s, conic_cluster_chains *chains, uint32_t begin, uint32_t end,
-                                size_t most_at_first, conic_cluster_levels *levels) {
+                                conic_region_as_one as_one, conic_cluster_levels *levels) {
   s->chains = chains;
   s->begin = begin;
   s->end = end;
   s->levels = levels;
   s->is_to_take = s->is_to_fit = s->is_over = 0;
-  s->is_one = most_at_first > 0;
+  s->is_one = as_one.most_at_first > 0;
+  s->most_error = as_one.most_error;
   memset(levels, 0, (s->is_one ? 1 : end - begin) * sizeof *levels);
   conic_status status = conic_simplifier_load(s);
   if (status != CONIC_OK)
     return status;
   s->n_last = s->n_triangles;
   s->n_wanted = wanted_after(s);
-  s->n_wanted = s->is_one && most_at_first < s->n_wanted ? most_at_first : s->n_wanted;
+  s->n_wanted = s->is_one && as_one.most_at_first < s->n_wanted ? as_one.most_at_first : s->n_wanted;
   fill_queue(s);
   return CONIC_OK;
 }
@@ -151,6 +152,7 @@ conic_status conic_region_advance(conic_simplifier *s, uint32_t *n_clusters) {
       status = conic_simplifier_take(s);
       s->n_last = s->n_alive;
       s->n_wanted = wanted_after(s);
+      s->is_over |= s->most_error > 0.0 && s->levels->levels[s->levels->n - 1].error > s->most_error;
     }
     if (status == CONIC_OK && !s->is_over)
       status = simplify(s);

@@ -41,6 +41,13 @@ conic_status conic_simplifier_create(conic_context *context, const conic_cluster
                                      const conic_face_tree *tree, conic_simplifier **simplifier);
 void conic_simplifier_destroy(conic_simplifier *simplifier);
 
+/* How a region is simplified as one. */
+typedef struct conic_region_as_one {
+  size_t most_at_first; /* triangles of the first level; 0: the region is not one */
+  double most_error;    /* above 0: all for one picture, and quickly: each level has half as many as the one before, and
+                           none comes after one that errs by more */
+} conic_region_as_one;
+
 /* Begins a region: the clusters [begin, end). Their levels are levels[0 …], which the calls below fill in. The caller
  * ends the region, and releases the levels, on failure too. Errors: MEMORY.
  *
@@ -50,14 +57,14 @@ void conic_simplifier_destroy(conic_simplifier *simplifier);
  * along them; their slots then tell the last stage that has them. Vertices on an open border may go along that, held by
  * planes that stand on its edges (§3.2.4). Vertices of another region stay. No cluster loses all of its triangles.
  *
- * A region with `most_at_first` above 0 is simplified as one. To the mesh it is one cluster, without chains; its faces
+ * A region with most_at_first above 0 is simplified as one. To the mesh it is one cluster, without chains; its faces
  * are in pieces [begin, end), which are only measured one by one. All levels are levels[0]'s. The first has at most so
  * many triangles, and each further one five sixths of the one before. What stays of an edge moves to where the quadric
  * is least (Garland and Heckbert 1997). If the mesh has colours, all vertices move along their normals at each stage,
  * to fit the mesh's faces best by least squares. So do normals of corners. All vertices of these levels are moved ones.
  */
 conic_status conic_region_begin(conic_simplifier *simplifier, conic_cluster_chains *chains, uint32_t begin,
-                                uint32_t end, size_t most_at_first, conic_cluster_levels *levels);
+                                uint32_t end, conic_region_as_one as_one, conic_cluster_levels *levels);
 
 /* Takes the stage that was measured, if any, as levels, and goes on to the next. *n_clusters are to be measured before
  * that is taken, twice where the region is one; 0: all is done. Errors: MEMORY. */

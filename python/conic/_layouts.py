@@ -328,6 +328,8 @@ class SourceView(ctypes.Structure):
         ("color_error", c_double),
         ("transparency", c_int),
         ("chance", c_double),
+        ("is_alone", c_int),
+        ("reserved_int", c_int),
     ]
 
 

@@ -225,6 +225,7 @@ class View(_Struct):
     color_error: float = 2.0
     transparency: str = "none"
     chance: float = 0.0
+    is_alone: bool = False
 
 
 @dataclass

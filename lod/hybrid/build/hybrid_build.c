@@ -18,8 +18,9 @@ typedef struct building {
   size_t *starts;
   conic_cluster_ways *ways;
   conic_hybrid_report *report;
-  int is_plain; /* without clusters: the levels of the whole alone, of a mesh that stays the caller's */
-  size_t n_own; /* faces; those behind them lie beside the model */
+  double most_error; /* above 0: in place of clusters' ways, those of the whole (lod/clusters/cluster_simplify.h) */
+  int is_lent;       /* the mesh stays the caller's */
+  size_t n_own;      /* faces; those behind them lie beside the model */
   size_t n_own_clusters;
 } building;
 
@@ -167,8 +168,9 @@ static conic_status find_clusters(building *b) {
   if (status == CONIC_OK)
     part_from_others(b);
   if (status == CONIC_OK)
-    status = b->is_plain ? cut_pieces(b)
-                         : conic_mesh_clusters_find(b->context, &mesh->mesh, &b->adjacency, &options, &b->clusters);
+    status = b->most_error > 0.0
+                 ? cut_pieces(b)
+                 : conic_mesh_clusters_find(b->context, &mesh->mesh, &b->adjacency, &options, &b->clusters);
   if (status == CONIC_OK && b->kept)
     status = group_kept(b->context, b->kept, &b->clusters);
   if (status == CONIC_OK)
@@ -284,7 +286,7 @@ static conic_status build_hybrid(building *b, conic_triangles *mesh, conic_hybri
   conic_ways_job ways = {.context = b->context,
                          .mesh = &b->mesh,
                          .options = b->options,
-                         .is_plain = b->is_plain,
+                         .most_error = b->most_error,
                          .n_clusters = b->n_own_clusters,
                          .ways = b->ways};
   status = conic_find_ways(&ways);
@@ -311,13 +313,12 @@ static conic_status build_some(building b, conic_triangles *mesh, const conic_hy
   if (status != CONIC_OK)
     return status;
   status = take_options(context, given, &options);
-  options.has_single_levels |= b.is_plain;
   if (status == CONIC_OK)
     status = conic_triangles_check(context, mesh, "the mesh");
   if (status == CONIC_OK)
     status = build_hybrid(&b, mesh, hybrid);
   release_building(&b);
-  if (!b.is_plain)
+  if (!b.is_lent)
     conic_triangles_release(context, mesh);
   if (status != CONIC_OK) {
     conic_hybrid_destroy(*hybrid);
@@ -331,9 +332,13 @@ conic_status conic_hybrid_build(conic_context *context, conic_triangles *mesh, c
   return build_some((building){.context = context, .n_own = SIZE_MAX}, mesh, options, hybrid, report);
 }
 
-conic_status conic_hybrid_build_levels(conic_context *context, const conic_triangles *mesh, conic_hybrid **hybrid) {
+conic_status conic_hybrid_build_lent(conic_context *context, const conic_triangles *mesh,
+                                     const conic_hybrid_options *options, double most_error, conic_hybrid **hybrid) {
+  const building b = {.context = context, .n_own = SIZE_MAX, .most_error = most_error, .is_lent = 1};
   conic_triangles lent = *mesh;
-  return build_some((building){.context = context, .n_own = SIZE_MAX, .is_plain = 1}, &lent, NULL, hybrid, NULL);
+  conic_hybrid_options single = *options;
+  single.has_single_levels |= most_error > 0.0;
+  return build_some(b, &lent, &single, hybrid, NULL);
 }
 
 conic_status conic_hybrid_build_part(conic_context *context, conic_triangles *mesh, size_t n_own,

@@ -29,10 +29,10 @@ typedef struct conic_ways_job {
   conic_context *context;
   const conic_clustered_mesh *mesh;
   const conic_hybrid_options *options;
-  int is_plain;             /* clusters have no ways but their faces; the whole has, from all of these on */
-  size_t n_clusters;        /* the first ones are the model's; the others lie beside them and stay */
-  conic_face_tree tree;     /* private */
-  double most_out;          /* private: how far surfels as built may stand out from the mesh; infinite: by any length */
+  double most_error;    /* above 0: clusters have no ways but their faces; the whole has, up to one that errs by more */
+  size_t n_clusters;    /* the first ones are the model's; the others lie beside them and stay */
+  conic_face_tree tree; /* private */
+  double most_out;      /* private: how far surfels as built may stand out from the mesh; infinite: by any length */
   conic_cluster_ways *ways; /* of each cluster; zero before */
   /* The caller releases these four by conic_nodes_release. */
   size_t n_nodes;
@@ -56,9 +56,11 @@ conic_status conic_find_whole(conic_ways_job *ways);
 /* A sphere and a cone for a cluster's faces. */
 conic_hybrid_bound conic_cluster_bound(const conic_clustered_mesh *mesh, uint32_t cluster);
 
-/* A model of the mesh's triangles, and of simpler and simpler ones for the whole, without clusters. The mesh stays the
- * caller's. Errors: as conic_hybrid_build. */
-conic_status conic_hybrid_build_levels(conic_context *context, const conic_triangles *mesh, conic_hybrid **hybrid);
+/* conic_hybrid_build of a mesh that stays the caller's. With most_error above 0, which is for one picture, without
+ * clusters: the model has the mesh's triangles, and for the whole levels of half as many each, down to the first that
+ * errs by more. Errors: as conic_hybrid_build. */
+conic_status conic_hybrid_build_lent(conic_context *context, const conic_triangles *mesh,
+                                     const conic_hybrid_options *options, double most_error, conic_hybrid **hybrid);
 
 /* conic_hybrid_build of the first n_own faces, without levels of the whole. The other faces lie beside these. They stay
  * as they are and are not in the model, but they are part of the surface: where they meet the model's faces, no vertex

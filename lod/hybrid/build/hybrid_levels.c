@@ -254,7 +254,7 @@ static conic_status run_passes(ways_pass *pass) {
   int n_threads = conic_context_threads(job->context);
   size_t n_all = job->mesh->clusters->n_clusters;
   double start = conic_seconds_now();
-  conic_status status = job->is_plain ? CONIC_OK : run_pass(pass);
+  conic_status status = job->most_error > 0.0 ? CONIC_OK : run_pass(pass);
   for (int i = 0; i < n_threads; i++)
     conic_sampler_destroy(pass->workers[i]);
   if (status == CONIC_OK)
@@ -262,7 +262,7 @@ static conic_status run_passes(ways_pass *pass) {
   double sampled = conic_seconds_now();
   if (status == CONIC_OK && !job->options->has_single_levels)
     status = conic_find_simpler(job);
-  if (status == CONIC_OK && (job->is_plain || !job->options->has_single_levels) && n_all == job->n_clusters &&
+  if (status == CONIC_OK && (job->most_error > 0.0 || !job->options->has_single_levels) && n_all == job->n_clusters &&
       !job->mesh->kept)
     status = conic_find_whole(job);
   job->sample_seconds = sampled - start;

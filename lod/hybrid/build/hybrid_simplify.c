@@ -45,8 +45,8 @@ static void begin_task(void *data, size_t i_place) {
   if (!place->simplifier)
     place->status = conic_simplifier_create(ways->context, ways->mesh, &ways->tree, &place->simplifier);
   if (place->status == CONIC_OK)
-    place->status = conic_region_begin(place->simplifier, &ways->chains, job->starts[i], job->starts[i + 1], 0,
-                                       job->levels + job->starts[i]);
+    place->status = conic_region_begin(place->simplifier, &ways->chains, job->starts[i], job->starts[i + 1],
+                                       (conic_region_as_one){0}, job->levels + job->starts[i]);
 }
 
 static void advance_task(void *data, size_t i_place) {
@@ -149,8 +149,8 @@ static void measure_whole(void *data, size_t i) {
 static conic_status simplify_whole(whole_job *job) {
   conic_ways_job *ways = job->ways;
   uint32_t n = (uint32_t)ways->mesh->clusters->n_clusters, n_pieces;
-  size_t most = ways->is_plain ? SIZE_MAX : MOST_OF_WHOLE;
-  conic_status status = conic_region_begin(job->simplifier, &job->chains, 0, n, most, &ways->whole);
+  const conic_region_as_one as_one = {ways->most_error > 0.0 ? SIZE_MAX : MOST_OF_WHOLE, ways->most_error};
+  conic_status status = conic_region_begin(job->simplifier, &job->chains, 0, n, as_one, &ways->whole);
   do {
     if (status == CONIC_OK)
       status = conic_region_advance(job->simplifier, &n_pieces);
