@@ -26,8 +26,7 @@ static const struct {
     [CLI_FACT_HYBRID] = {"hybrids", "hybrids (a .chy, or a mesh with --as hybrid)"},
     [CLI_FACT_LEVELS] = {"levels", "a single cloud in levels (.lpc, which conic layer makes, COPC, EPT, Potree 2)"},
     [CLI_FACT_NODES] = {"nodes", "a single .cot (conic octree makes one) with its own colours"},
-    [CLI_FACT_CHOOSES] = {"hierarchies", "a single .cot, .lpc or .chy (conic octree, conic layer and conic hybrid make "
-                                         "them), and meshes with --as hybrid"},
+    [CLI_FACT_CHOOSES] = {"choosable", "points, meshes and hierarchies"},
     [CLI_FACT_URL] = {"urls", "URLs"},
     [CLI_FACT_ACCUMULATED] = {"accumulated", "--accumulate N"},
     [CLI_FACT_SAMPLE] = {"sample", "--sample I"},

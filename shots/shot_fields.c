@@ -167,8 +167,7 @@ static void set_view(void *value) {
 #define S conic_source_view
 static const conic_shot_row view_list[] = {
     SIZE_ROW,
-    {CONIC_ROW_DOUBLE, AT(error_px), "px", "how far off the picture may be; 0: all is drawn",
-     IN(0, 1e9)},
+    {CONIC_ROW_DOUBLE, AT(error_px), "px", "how far off the picture may be; 0: all is drawn", IN(0, 1e9)},
     {CONIC_ROW_UINT64, AT(budget), NULL, "or the best of so many splats and triangles", IN(0, 4294967294.0)},
     {CONIC_ROW_INT, AT(only_kind), NULL, "of a hybrid: 0 triangles alone, 1 surfels alone, -1 as it was built",
      IN(-1, 1)},
@@ -311,7 +310,8 @@ static const conic_shot_row reading_list[] = {
     {CONIC_ROW_DOUBLE, AT(crease_deg), "degrees", "edges up to that are round", IN(0, 180)},
     {CONIC_ROW_HAS, AT(gaussians), NULL, "Gaussian scenes are composited, and are no splats like others"},
     {CONIC_ROW_TEXT, AT(where), NULL, "which points are wanted"},
-    {CONIC_ROW_TRUTH, AT(keeps_alpha), NULL, "vertices keep their alpha"}};
+    {CONIC_ROW_TRUTH, AT(keeps_alpha), NULL, "vertices keep their alpha"},
+    {CONIC_ROW_LEFT_OUT, AT(cache), .meaning = "what is kept is what would be built"}};
 TABLE(reading, set_reading, NULL)
 #undef S
 

@@ -22,6 +22,27 @@ typedef struct lean_choosing {
 
 /* --- making --- */
 
+static conic_status read_octree(conic_context *context, const char *path, void **octree) {
+  return conic_octree_read(context, path, (conic_octree **)octree);
+}
+
+static conic_status read_levels(conic_context *context, const char *path, void **hybrid) {
+  return conic_hybrid_read(context, path, (conic_hybrid **)hybrid);
+}
+
+/* What the cache has of a set; *kept stays null where there is nothing, or no cache. */
+static conic_status find_kept(const lean_choosing *c, const conic_drawing *of, const char *ending,
+                              conic_lean_cache_reader *read, char path[CONIC_LEAN_CACHE_PATH], void **kept) {
+  conic_context *context = c->source->context;
+  if (!c->lean->cache)
+    return CONIC_OK;
+  conic_status status = conic_lean_cache_path(context, c->lean->cache, of, c->render->kernel.cutoff, ending, path);
+  if (status == CONIC_OK)
+    status = conic_lean_cache_read(context, path, read, kept);
+  c->lean->is_from_cache |= *kept != NULL;
+  return status;
+}
+
 static conic_status need_octree(const lean_choosing *c) {
   conic_lean_drawing *lean = c->lean;
   conic_context *context = c->source->context;
@@ -37,9 +58,19 @@ static conic_status need_octree(const lean_choosing *c) {
   conic_octree_options_init(&options);
   options.cutoff = lean->cutoff;
   memcpy(copy.origin, c->all->splats->origin, sizeof copy.origin);
-  conic_status status = conic_splats_append(context, &copy, c->all->splats);
-  if (status == CONIC_OK)
+  const conic_drawing splats = {.splats = c->all->splats};
+  char path[CONIC_LEAN_CACHE_PATH];
+  void *kept = NULL;
+  conic_status status = find_kept(c, &splats, "cot", read_octree, path, &kept);
+  lean->octree = kept;
+  if (status == CONIC_OK && !kept)
+    status = conic_splats_append(context, &copy, c->all->splats);
+  if (status == CONIC_OK && !kept)
     status = conic_octree_build(context, &copy, &options, &lean->octree);
+  if (status == CONIC_OK && !kept && lean->cache)
+    status = conic_octree_write(lean->octree, path);
+  if (!kept && lean->cache)
+    conic_lean_cache_trim(lean->cache, path);
   lean->build_seconds += conic_seconds_now() - start;
   return status;
 }
@@ -77,8 +108,18 @@ static conic_status need_levels(const lean_choosing *c, double error_px) {
     return CONIC_OK;
   conic_hybrid_options_init(&options);
   options.cutoff = c->render->kernel.cutoff;
-  conic_status status =
-      conic_hybrid_build_lent(c->source->context, c->all->triangles, &options, most_error, &lean->levels);
+  const conic_drawing triangles = {.triangles = c->all->triangles};
+  char path[CONIC_LEAN_CACHE_PATH];
+  void *kept = NULL;
+  const int may_keep = lean->cache && !lean->is_alone;
+  conic_status status = may_keep ? find_kept(c, &triangles, "chy", read_levels, path, &kept) : CONIC_OK;
+  lean->levels = kept;
+  if (status == CONIC_OK && !kept)
+    status = conic_hybrid_build_lent(c->source->context, c->all->triangles, &options, most_error, &lean->levels);
+  if (status == CONIC_OK && !kept && may_keep)
+    status = conic_hybrid_write(lean->levels, path);
+  if (!kept && may_keep)
+    conic_lean_cache_trim(lean->cache, path);
   lean->build_seconds += conic_seconds_now() - start;
   return status;
 }
@@ -194,7 +235,7 @@ static conic_status settle_transparency(conic_source *source, const conic_drawin
 
 static void tell_choice(const lean_choosing *c) {
   conic_log(c->source->context, CONIC_LOG_INFO,
-            "%s: %zu of %zu splats%s and %zu of %zu triangles keep %.3g pixels; that took %.0f ms", c->source->name,
+            "%s: %zu of %zu splats%s and %zu of %zu triangles keep %.3g pixels; building took %.0f ms", c->source->name,
             c->drawing.splats->count, c->all->splats->count, c->lean->is_cut ? ", by cells," : "",
             c->drawing.triangles->count, c->all->triangles->count, c->reached_px, 1e3 * c->lean->build_seconds);
 }
@@ -206,14 +247,14 @@ conic_status conic_lean_choose(conic_source *source, const conic_drawing *all, i
   conic_status status = settle_transparency(source, all);
   lean->is_alone = view->is_alone && !view->budget;
   lean->is_cut = lean->is_alone || !is_fixed;
-  lean->build_seconds = 0.0;
+  const double built_before = lean->build_seconds;
   if (status == CONIC_OK && view->error_px > 0.0)
     status = choose_parts(&c, view->error_px, 0);
   else if (status == CONIC_OK && view->budget < all->splats->count + all->triangles->count)
     status = choose_for_budget(&c, view->budget);
   if (status != CONIC_OK)
     return status;
-  if (lean->build_seconds > 0.0)
+  if (lean->build_seconds > built_before)
     tell_choice(&c);
   conic_source_choice *choice = &source->choice;
   choice->drawing = c.drawing;
@@ -251,7 +292,7 @@ void conic_lean_tell(const conic_lean_drawing *lean, const conic_source_choice *
                                   : lean->is_cut ? "cells"
                                                  : "octree"),
                   conic_fact_text(CONIC_FACT_TEXT, "triangles", "%s", has_triangles ? "levels" : "all"),
-                  CONIC_NUMBER("ms", 1e3 * lean->build_seconds), CONIC_END);
+                  CONIC_NUMBER("ms", 1e3 * lean->build_seconds), CONIC_TRUTH("cached", lean->is_from_cache), CONIC_END);
 }
 
 void conic_lean_release(conic_context *context, conic_lean_drawing *lean) {
@@ -260,5 +301,6 @@ void conic_lean_release(conic_context *context, conic_lean_drawing *lean) {
   conic_hybrid_selection_release(context, &lean->triangles);
   conic_octree_destroy(lean->octree);
   conic_hybrid_destroy(lean->levels);
+  conic_memory_release(context, lean->cache);
   memset(lean, 0, sizeof *lean);
 }

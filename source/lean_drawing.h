@@ -3,10 +3,12 @@
 #define CONIC_LEAN_DRAWING_H
 
 #include "lod/octree/screen_cells.h"
+#include "source/lean_cache.h"
 #include "source/source_kind.h"
 
 /* What was made, and is kept for further pictures. Zero before the first. */
 typedef struct conic_lean_drawing {
+  char *cache;  /* the folder that keeps octrees and levels; null: none */
   float cutoff; /* of the octree */
   conic_octree *octree;
   conic_selection nodes;
@@ -17,7 +19,8 @@ typedef struct conic_lean_drawing {
   int is_alone;         /* the last picture's triangles are of levels for it alone, … */
   int is_cut;           /* … its splats of cells, not of the octree */
   size_t n_ids;         /* its triangles are called by numbers from here on */
-  double build_seconds; /* of what was made for it */
+  double build_seconds; /* of all that was made or read */
+  int is_from_cache;
 } conic_lean_drawing;
 
 /* Fills in the choice for a picture with an error or a budget. Where nothing is left out, all is drawn, in its order.

@@ -264,7 +264,7 @@ static void note_parts(cli_render_job *job, const cli_scene_words *words) {
         .why = "it looks at all that there is; conic octree and conic layer take it, too, and keep the colours"}},
       {job->top.gsd > 0.0, "camera top:GSD", {.needs = F(MAP)}},
       {job->top.epsg != 0, "camera top:GSD:EPSG", {.on = F(MAP), .needs = F(TIFF)}},
-      {job->is_color_error_given, "error PX:STEPS", {.on = F(HYBRID), .needs = F(ERROR)}},
+      {job->is_color_error_given, "error PX:STEPS", {.on = F(HYBRID) | F(TRIANGLES), .needs = F(ERROR)}},
       {job->shot.gaussians.ignores_center != 0,
        "profile NAME:ignore-center",
        {.on = F(COMPOSITED), .needs = F(OWN_CENTER)}},

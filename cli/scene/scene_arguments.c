@@ -207,14 +207,22 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       CLI_COLOR_OPTIONS(&job->coloring),
       CLI_WHERE(&job->opening.where),
       {"error", CLI_NUMBER, &job->shot.view.error_px, "PX[:STEPS]",
-       "of a .cot, .lpc or .chy, draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; "
-       "of a .chy, also by how many steps colours may differ: black and white do by 100, and 2 are just visible [0:2]",
+       "draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a .chy, "
+       "also "
+       "by how many steps colours may differ: black and white do by 100, and 2 are just visible [0:2]",
        0, 65536, .group = "levels of detail",
-       .intro = "Fewer primitives where that is enough: of .cot, .lpc, .chy and other hierarchies.", .is_usual = 1,
-       .acts = {.on = CLI_FACT(CHOOSES)}, .parse_tail = parse_color_error, .tail = job},
+       .intro = "Fewer primitives where that is enough: from hierarchies, or built of points and meshes.",
+       .is_usual = 1, .acts = {.on = CLI_FACT(CHOOSES)}, .parse_tail = parse_color_error, .tail = job},
       {"budget", CLI_COUNT, &job->budget, "N",
-       "of a .cot, .lpc or .chy, draw N splats and triangles at most, those whose error is the least [all]", 1,
-       4294967294.0, .is_usual = 1, .acts = {.on = CLI_FACT(CHOOSES), .apart = CLI_FACT(MAP)}},
+       "draw N splats and triangles at most, those whose error is the least [all]", 1, 4294967294.0, .is_usual = 1,
+       .acts = {.on = CLI_FACT(CHOOSES), .apart = CLI_FACT(MAP)}},
+      {"cache", CLI_TEXT, &job->opening.cache, "DIR",
+       "of --error and --budget, keep what is built of points and meshes in this folder, up to 4 GiB, and take it from "
+       "there the next time",
+       .acts = {.on = CLI_SURFACES,
+                .needs = CLI_CHOSEN,
+                .apart = CLI_FACT(NODES) | CLI_FACT(LEVELS) | CLI_FACT(HYBRID),
+                .why = "it is read as it is"}},
       {"only", CLI_CHOICE, &job->shot.view.only_kind, "KIND",
        "of a .chy, draw every patch as triangles, or every one as surfels (splats) [as built]", .choices = only_words,
        .acts = {.on = CLI_FACT(HYBRID)}},

@@ -105,7 +105,8 @@ int cli_scene_check(const cli_session *session, cli_scene_words *words, cli_rend
   job->opening.is_whole =
       !cli_lod_is_wanted(job) && !job->boxes_path && !(job->is_for_looking && job->abilities & CONIC_SOURCE_STREAMS);
   answer = cli_effects_check(session, words, job);
-  job->shot.view.is_alone &= job->shot.view.error_px > 0.0 && !(job->effects.asked & CLI_DRAWS_MORE);
+  job->shot.view.is_alone &=
+      job->shot.view.error_px > 0.0 && !job->opening.cache && !(job->effects.asked & CLI_DRAWS_MORE);
   if (answer == CLI_DONE && job->abilities & CONIC_SOURCE_CLUSTERS && job->n_inputs != 1)
     answer = cli_usage("%s: a hybrid is drawn by itself, and made of one file", session->command);
   return answer == CLI_DONE ? cli_device_check(session, &job->device) : answer;

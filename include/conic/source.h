@@ -70,6 +70,8 @@ typedef struct conic_source_options {
   const conic_gaussian_options *gaussians; /* how Gaussian scenes are composited; null: they are splats like others */
   const char *where; /* which points are read, as in conic_read_options, from files of points and .lpc; null: all */
   int keeps_alpha;   /* of a file's vertices, as in conic_read_options */
+  const char *cache; /* a folder that keeps what an error or a budget has built of splats and triangles in memory, up to
+                        4 GiB, by what these hold: several processes may use it at a time; null: none */
 } conic_source_options;
 
 /* Splats, cutoff 1.5, 20 neighbours, no dots, flat faces. */

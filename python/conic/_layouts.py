@@ -491,6 +491,7 @@ class Reading(ctypes.Structure):
         ("gaussians", POINTER(GaussianOptions)),
         ("where", c_char_p),
         ("keeps_alpha", c_int),
+        ("cache", c_char_p),
     ]
 
 

@@ -356,6 +356,7 @@ class Reading(_Struct):
     gaussians: bool = field(default=True, metadata={"apart": True})  #: they are composited, and no splats like others
     where: Optional[str] = None
     keeps_alpha: bool = False
+    cache: Optional[str] = None
 
     def _put(self, struct: Any, alive: List[Any]) -> None:
         super()._put(struct, alive)
