@@ -168,7 +168,7 @@ static conic_status choose_nodes(lean_choosing *c, double error_px, uint64_t bud
  * (docs/reference/hybrid.md). */
 static const double fitted_share = 1.2;
 
-/* All triangles stay where none of the simpler levels keeps the error. */
+/* All triangles stay where none of the simpler levels keeps the error, or all of these are needed. */
 static conic_status choose_levels(lean_choosing *c, double error_px, uint64_t budget) {
   conic_lean_drawing *lean = c->lean;
   const double share = lean->is_alone ? 1.0 : fitted_share;
@@ -183,7 +183,7 @@ static conic_status choose_levels(lean_choosing *c, double error_px, uint64_t bu
     return status;
   status = conic_hybrid_select(lean->levels, c->camera, c->render, &view, &lean->triangles);
   const conic_hybrid_selection *chosen = &lean->triangles;
-  if (status != CONIC_OK || !chosen->n_simpler || (!budget && !(share * chosen->error_px <= error_px)))
+  if (status != CONIC_OK || !(chosen->error_px > 0.0) || (!budget && !(share * chosen->error_px <= error_px)))
     return status;
   c->drawing.triangles = &lean->triangles.triangles;
   c->n_culled += chosen->n_culled;

@@ -76,6 +76,7 @@ def render(
     where: Optional[PathLike] = None,
     error: Optional[float] = None,
     budget: Optional[Union[int, str]] = None,
+    cache: Optional[PathLike] = None,
     only: Optional[Literal["triangles", "surfels"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
@@ -196,10 +197,11 @@ def render(
         two ends behind it, or alone [what suits, from the 2nd to the 98th percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
-    error: of a .cot, .lpc or .chy, draw as coarsely as keeps the error on the screen below so many pixels; 0:
-        draw all; of a .chy, also by how many steps colours may differ: black and white do by 100, and 2 are
-        just visible [0:2]
-    budget: of a .cot, .lpc or .chy, draw N splats and triangles at most, those whose error is the least [all]
+    error: draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a
+        .chy, also by how many steps colours may differ: black and white do by 100, and 2 are just visible [0:2]
+    budget: draw N splats and triangles at most, those whose error is the least [all]
+    cache: of --error and --budget, keep what is built of points and meshes in this folder, up to 4 GiB, and
+        take it from there the next time
     only: of a .chy, draw every patch as triangles, or every one as surfels (splats) [as built]
     method: how a splat becomes pixels, from rough to exact: point, disc, affine, conic, ray; auto: conic where
         that is exact enough, else ray; patch: as part of a smooth surface through the points, with patch:D by
@@ -290,6 +292,7 @@ def verify(
     where: Optional[PathLike] = None,
     error: Optional[float] = None,
     budget: Optional[Union[int, str]] = None,
+    cache: Optional[PathLike] = None,
     only: Optional[Literal["triangles", "surfels"]] = None,
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
@@ -367,10 +370,11 @@ def verify(
         two ends behind it, or alone [what suits, from the 2nd to the 98th percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
-    error: of a .cot, .lpc or .chy, draw as coarsely as keeps the error on the screen below so many pixels; 0:
-        draw all; of a .chy, also by how many steps colours may differ: black and white do by 100, and 2 are
-        just visible [0:2]
-    budget: of a .cot, .lpc or .chy, draw N splats and triangles at most, those whose error is the least [all]
+    error: draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a
+        .chy, also by how many steps colours may differ: black and white do by 100, and 2 are just visible [0:2]
+    budget: draw N splats and triangles at most, those whose error is the least [all]
+    cache: of --error and --budget, keep what is built of points and meshes in this folder, up to 4 GiB, and
+        take it from there the next time
     only: of a .chy, draw every patch as triangles, or every one as surfels (splats) [as built]
     method: how a splat becomes pixels, from rough to exact: point, disc, affine, conic, ray; auto: conic where
         that is exact enough, else ray; patch: as part of a smooth surface through the points, with patch:D by
@@ -469,6 +473,7 @@ def judge(
     where: Optional[PathLike] = None,
     error: Optional[float] = None,
     budget: Optional[Union[int, str]] = None,
+    cache: Optional[PathLike] = None,
     only: Optional[Literal["triangles", "surfels"]] = None,
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
@@ -553,10 +558,11 @@ def judge(
         two ends behind it, or alone [what suits, from the 2nd to the 98th percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
-    error: of a .cot, .lpc or .chy, draw as coarsely as keeps the error on the screen below so many pixels; 0:
-        draw all; of a .chy, also by how many steps colours may differ: black and white do by 100, and 2 are
-        just visible [0:2]
-    budget: of a .cot, .lpc or .chy, draw N splats and triangles at most, those whose error is the least [all]
+    error: draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a
+        .chy, also by how many steps colours may differ: black and white do by 100, and 2 are just visible [0:2]
+    budget: draw N splats and triangles at most, those whose error is the least [all]
+    cache: of --error and --budget, keep what is built of points and meshes in this folder, up to 4 GiB, and
+        take it from there the next time
     only: of a .chy, draw every patch as triangles, or every one as surfels (splats) [as built]
     method: how a splat becomes pixels, from rough to exact: point, disc, affine, conic, ray; auto: conic where
         that is exact enough, else ray; patch: as part of a smooth surface through the points, with patch:D by
@@ -646,6 +652,7 @@ def explain(
     where: Optional[PathLike] = None,
     error: Optional[float] = None,
     budget: Optional[Union[int, str]] = None,
+    cache: Optional[PathLike] = None,
     only: Optional[Literal["triangles", "surfels"]] = None,
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
@@ -719,10 +726,11 @@ def explain(
         two ends behind it, or alone [what suits, from the 2nd to the 98th percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
-    error: of a .cot, .lpc or .chy, draw as coarsely as keeps the error on the screen below so many pixels; 0:
-        draw all; of a .chy, also by how many steps colours may differ: black and white do by 100, and 2 are
-        just visible [0:2]
-    budget: of a .cot, .lpc or .chy, draw N splats and triangles at most, those whose error is the least [all]
+    error: draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a
+        .chy, also by how many steps colours may differ: black and white do by 100, and 2 are just visible [0:2]
+    budget: draw N splats and triangles at most, those whose error is the least [all]
+    cache: of --error and --budget, keep what is built of points and meshes in this folder, up to 4 GiB, and
+        take it from there the next time
     only: of a .chy, draw every patch as triangles, or every one as surfels (splats) [as built]
     method: how a splat becomes pixels, from rough to exact: point, disc, affine, conic, ray; auto: conic where
         that is exact enough, else ray; patch: as part of a smooth surface through the points, with patch:D by
@@ -1234,6 +1242,7 @@ def gradient(
     where: Optional[PathLike] = None,
     error: Optional[float] = None,
     budget: Optional[Union[int, str]] = None,
+    cache: Optional[PathLike] = None,
     only: Optional[Literal["triangles", "surfels"]] = None,
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
@@ -1300,10 +1309,11 @@ def gradient(
         two ends behind it, or alone [what suits, from the 2nd to the 98th percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
-    error: of a .cot, .lpc or .chy, draw as coarsely as keeps the error on the screen below so many pixels; 0:
-        draw all; of a .chy, also by how many steps colours may differ: black and white do by 100, and 2 are
-        just visible [0:2]
-    budget: of a .cot, .lpc or .chy, draw N splats and triangles at most, those whose error is the least [all]
+    error: draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a
+        .chy, also by how many steps colours may differ: black and white do by 100, and 2 are just visible [0:2]
+    budget: draw N splats and triangles at most, those whose error is the least [all]
+    cache: of --error and --budget, keep what is built of points and meshes in this folder, up to 4 GiB, and
+        take it from there the next time
     only: of a .chy, draw every patch as triangles, or every one as surfels (splats) [as built]
     method: how a splat becomes pixels, from rough to exact: point, disc, affine, conic, ray; auto: conic where
         that is exact enough, else ray; patch: as part of a smooth surface through the points, with patch:D by

@@ -69,6 +69,7 @@ CASES = {
     "--where": [["--where", "x > 0.2"], ["--where", "intensity > 20"]],
     "--error": [["--error", "8"], ["--error", "8:50"], ["--error", "0:50"]],
     "--budget": [["--budget", "50"]],
+    "--cache": [["--cache", "kept"]],
     "--only": [["--only", "triangles"], ["--only", "surfels"]],
     "--method": [["--method", word] for word in ("affine", "point", "patch", "patch:2", "patch:2:3x", "conic:2")],
     "--profile": [["--profile", word] for word in ("surface", "gsplat-1.6", "inria-2023:ignore-center",
