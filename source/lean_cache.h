@@ -1,6 +1,5 @@
 /* A folder that keeps what was built of splats and triangles, by what these hold. */
-#ifndef CONIC_LEAN_CACHE_H
-#define CONIC_LEAN_CACHE_H
+#pragma once
 
 #include "conic/triangles.h"
 #include "core/files/sha256.h"
@@ -22,5 +21,3 @@ conic_status conic_lean_cache_read(conic_context *context, const char *path, con
 
 /* After a file was written: leaves no more than the bytes above. */
 void conic_lean_cache_trim(const char *folder, const char *path);
-
-#endif

@@ -271,6 +271,27 @@ conic_status conic_lean_choose(conic_source *source, const conic_drawing *all, i
   return CONIC_OK;
 }
 
+double conic_lean_saving(const conic_source *source, const conic_camera *camera, const conic_render_options *render) {
+  enum { PART = 8, FEWEST = 1000 };
+  const conic_splats *splats = source->choice.drawing.splats;
+  conic_camera middle = *camera;
+  conic_screen_cells cells;
+  double saving = 1.0;
+  if (source->kind != &conic_source_kind_drawing || !source->choice.is_all)
+    return saving;
+  middle.width = (camera->width + PART - 1) / PART;
+  middle.height = (camera->height + PART - 1) / PART;
+  middle.cx -= 0.5 * (camera->width - middle.width);
+  middle.cy -= 0.5 * (camera->height - middle.height);
+  if (conic_screen_cells_find(source->context, splats, &middle, render, 1.0, &cells) == CONIC_OK) {
+    const size_t n_seen = splats->count - cells.n_culled;
+    if (n_seen >= FEWEST)
+      saving = (double)n_seen / (double)cells.splats.count;
+  }
+  conic_screen_cells_release(source->context, &cells);
+  return saving;
+}
+
 /* --- what it is called --- */
 
 /* Splats by their index in all, or, of a node, from their number on; triangles come after these. */

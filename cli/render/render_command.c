@@ -12,6 +12,7 @@
 #include "cli/render/units.h"
 #include "cli/scene/stereo.h"
 #include "core/base/order.h"
+#include "source/lean_drawing.h"
 
 CONIC_DEFINE_ORDER(compare_frames, conic_render_statistics, ms.frame)
 
@@ -56,6 +57,20 @@ static void warn_of_empty(cli_session *session, cli_render_job *job) {
   else
     conic_log(session->context, CONIC_LOG_WARNING, "%s: the picture is empty: all is out of sight%s", job->inputs[0],
               job->opening.where ? ", or left out by --where" : "");
+}
+
+/* A hint, once, where far more splats are drawn than pixels can show, and it is known that a tenth would do. */
+static void hint_at_error(cli_session *session, cli_render_job *job, const conic_camera *camera) {
+  enum { MANY = 100000, MANY_A_PIXEL = 30, TIMES = 10 };
+  const conic_render_statistics *s = &job->statistics;
+  const double n_samples = (double)job->shot.view.samples * (double)job->shot.view.samples;
+  if (job->is_hinted || session->host || session->is_quiet || job->is_plain || job->shot.n_samples ||
+      s->splats_drawn < MANY || (double)s->splats_drawn * n_samples < (double)MANY_A_PIXEL * (double)s->pixels_covered)
+    return;
+  job->is_hinted = 1;
+  const double saving = conic_lean_saving(job->source, camera, &job->shot.render);
+  if (saving >= TIMES)
+    cli_note(session, "--error 1 would draw 1 of %.0f of the splats, none off by more than a pixel", saving);
 }
 
 /* The finest that a hybrid has of one kind may not be as fine as it was asked to be; surfels alone, of which nothing
@@ -204,6 +219,7 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
   warn_of_empty(session, job);
   warn_of_error(session, job);
   warn_of_alpha(session, job);
+  hint_at_error(session, job, &camera);
   status = cli_shot_describe(session, job);
   if (status == CONIC_OK)
     status = cli_frame_files_write(session, job, &camera, image, i_frame);

@@ -77,6 +77,7 @@ typedef struct cli_render_job {
   int is_warned;       /* that a picture is empty */
   int is_error_warned; /* that --error is not kept */
   int is_alpha_warned; /* that alpha is not shown */
+  int is_hinted;       /* that --error would do, or not */
   int repeat;
   int is_aov_given, is_samples_given, is_prefilter_given, is_color_error_given;
   cli_stereo stereo;               /* --stereo */

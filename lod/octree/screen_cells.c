@@ -25,6 +25,7 @@ typedef struct cells_job {
   const conic_splats *sorted;
   conic_radix_item *items;
   size_t n;
+  uint32_t *clip_of;
   uint8_t *is_drawn; /* of each of the sorted splats: 1 as it was, 2 for several, 0: another stands for it */
   conic_octree_loops loops;
   conic_disc_samples samples;
@@ -78,16 +79,29 @@ static void key_task(void *data, size_t i_task, int i_thread) {
     job->items[i] = (conic_radix_item){key_of(job, i), (uint32_t)i};
 }
 
-/* Those in sight; splats with clip lines stay. */
 static void keep_seen(cells_job *job) {
-  for (size_t i = 0; i < job->from->n_clips; i++) {
-    const uint32_t splat = job->from->clips[i].splat;
-    if (job->items[splat].key != IS_CULLED)
-      job->items[splat].key = STAYS | splat;
-  }
   for (size_t i = 0; i < job->from->count; i++)
     if (job->items[i].key != IS_CULLED)
       job->items[job->n++] = job->items[i];
+}
+
+/* The number of each splat's clip lines, or CONIC_NO_CLIP; null where there are none. */
+static conic_status number_clips(conic_context *context, cells_job *job) {
+  const conic_splats *from = job->from;
+  if (!from->n_clips)
+    return CONIC_OK;
+  job->clip_of = conic_memory_allocate(context, from->count, sizeof *job->clip_of);
+  if (!job->clip_of)
+    return CONIC_ERROR_MEMORY;
+  memset(job->clip_of, 0xFF, from->count * sizeof *job->clip_of);
+  for (size_t i = 0; i < from->n_clips; i++)
+    job->clip_of[from->clips[i].splat] = (uint32_t)i;
+  return CONIC_OK;
+}
+
+static const conic_clip *clip_at(const cells_job *job, size_t i) {
+  uint32_t clip = job->clip_of ? job->clip_of[job->items[i].value] : CONIC_NO_CLIP;
+  return clip == CONIC_NO_CLIP ? NULL : &job->from->clips[clip];
 }
 
 /* --- joining --- */
@@ -112,7 +126,7 @@ static void find_frame(const cells_job *job, size_t begin, size_t end, const con
 }
 
 /* Whether all places of the disc within `gap` of one are as near as that to splat i, which reaches out as far as its
- * shorter axis in every direction of its plane. */
+ * shorter axis in every direction of its plane. What clip lines leave of it may be at its other end. */
 static int is_near(const cells_job *job, size_t i, const double at[3], const double n[3], double gap, double distance) {
   double place[3], apart[3], u[3], v[3], normal[3], tilt[3];
   conic_vector_at(job->sorted->position, i, place);
@@ -126,7 +140,8 @@ static int is_near(const cells_job *job, size_t i, const double at[3], const dou
   double flat2 = conic_dot(apart, apart) - along * along / length2;
   double high = (fabs(along) + gap * conic_length(tilt)) / sqrt(length2);
   double flat = sqrt(flat2 > 0.0 ? flat2 : 0.0) + gap - job->cutoff * sqrt(uu < vv ? uu : vv);
-  return high * high + (flat > 0.0 ? flat * flat : 0.0) <= distance * distance;
+  double left = distance - (clip_at(job, i) ? 2.0 * job->cutoff * sqrt(uu > vv ? uu : vv) : 0.0);
+  return left > 0.0 && high * high + (flat > 0.0 ? flat * flat : 0.0) <= left * left;
 }
 
 /* Whether no place of the disc is farther than that from the splats. */
@@ -257,26 +272,22 @@ static conic_status gather(conic_context *context, cells_job *job, conic_screen_
 /* The splats that are drawn move up; those with clip lines have theirs. */
 static void close_up(const cells_job *job, conic_screen_cells *cells) {
   conic_splats *s = &cells->splats;
-  const conic_clip *clip = job->from->clips, *const end = clip + job->from->n_clips;
   float *arrays[N_ARRAYS];
   size_t n = 0;
   list_arrays(s, arrays);
   for (size_t i = 0; i < job->n; i++) {
-    uint32_t id = job->items[i].value;
-    int stays = (job->items[i].key & STAYS) != 0;
     if (!job->is_drawn[i])
       continue;
     for (int k = 0; k < N_ARRAYS; k++)
       if (arrays[k])
         arrays[k][n] = arrays[k][i];
-    while (stays && clip < end && clip->splat < id)
-      clip++;
-    if (stays && clip < end && clip->splat == id) {
+    const conic_clip *clip = job->is_drawn[i] == 1 ? clip_at(job, i) : NULL;
+    if (clip) {
       s->clips[s->n_clips] = *clip;
       s->clips[s->n_clips++].splat = (uint32_t)n;
     }
     cells->n_joined += job->is_drawn[i] == 2;
-    cells->ids[n++] = id;
+    cells->ids[n++] = job->items[i].value;
   }
   s->count = n;
 }
@@ -298,6 +309,8 @@ conic_status conic_screen_cells_find(conic_context *context, const conic_splats 
   if (status == CONIC_OK)
     status = conic_memory_allocate_these(context, CONIC_ROOM(job.items, n), CONIC_ROOM(job.is_drawn, n),
                                          CONIC_ROOM(cells->ids, n));
+  if (status == CONIC_OK)
+    status = number_clips(context, &job);
   if (status == CONIC_OK) {
     conic_octree_loops_init(&job.loops, isa);
     conic_disc_samples_init(&job.samples);
@@ -312,7 +325,7 @@ conic_status conic_screen_cells_find(conic_context *context, const conic_splats 
     conic_parallel_for(context, (job.n + ITEMS_A_TASK - 1) / ITEMS_A_TASK, join_task, &job);
     close_up(&job, cells);
   }
-  conic_memory_release_these(context, job.items, job.is_drawn);
+  conic_memory_release_these(context, job.items, job.is_drawn, job.clip_of);
   return status;
 }
 
