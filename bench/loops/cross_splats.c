@@ -435,7 +435,7 @@ static void compare_all(const cross *c, fixture *f) {
                                          1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_ALBEDO};
   splat_desk *desks[CONIC_N_ISAS + 1];
   uint64_t state = c->seed;
-  fixture_camera(f, 90, 86, 70.0); /* no multiple of a block */
+  fixture_camera(f, 58, 54, 45.0); /* no multiple of a block */
   for (int i = 0; i < 4 * CONIC_N_METHODS * CONIC_N_KERNELS; i += STEP) {
     int number = i / 2;
     choose(f, number);

@@ -37,7 +37,7 @@ again() { # NAME ARGUMENTS …: of one picture
 data=$1/../shared/data
 n_references=0
 references=("$1"/refimages/*/cmd)
-! grep -q '^CONIC_SANITIZE:STRING=.' "$3/CMakeCache.txt" || references=("$1"/refimages/confetti-18/cmd)
+[[ ! $sanitized ]] || references=("$1"/refimages/confetti-18/cmd)
 for command in "${references[@]}"; do
   name=$(basename "$(dirname "$command")")
   mkdir "$name"

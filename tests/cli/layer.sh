@@ -22,12 +22,12 @@ is_sound() { # FILE
   [[ $(value kind info.json) == lpc && $(value sound info.json) == true ]] || fail "$1 is not sound"
 }
 
-run 0 make gyroid -n 200k -o gyroid.ply
+run 0 make gyroid -n 60k -o gyroid.ply
 run 0 layer gyroid.ply -o gyroid.lpc --json layer.json
-[[ $(value points_in layer.json) == 200000 && $(value points_out layer.json) == 200000 ]] || fail "counts"
+[[ $(value points_in layer.json) == 60000 && $(value points_out layer.json) == 60000 ]] || fail "counts"
 [[ $(value bytes layer.json) == $(stat -c %s gyroid.lpc) ]] || fail "bytes"
 is_sound gyroid.lpc
-[[ $(value points info.json) == 200000 && $(value clouds info.json) == $(value clouds layer.json) ]] || fail "info: counts"
+[[ $(value points info.json) == 60000 && $(value clouds info.json) == $(value clouds layer.json) ]] || fail "info: counts"
 awk -v p="$(value position info.json)" -v n="$(value normal info.json)" -v i="$(value index info.json)" \
   'BEGIN { exit !(p + n + i <= 28) }' || fail "over 28 bits a sample"
 run 0 info gyroid.lpc
@@ -39,7 +39,7 @@ cmp -s gyroid.lpc other.lpc || fail "threads or memory change the file"
 "$conic" layer - -o other.lpc < gyroid.ply || fail "from standard input"
 cmp -s gyroid.lpc other.lpc || fail "a pipe changes the file"
 run 0 layer gyroid.ply gyroid.ply -o other.lpc --cloud-size 512 --quantum 0.01 --json twice.json
-[[ $(value points_out twice.json) == 400000 && $(value quantum twice.json) == 0.01 ]] || fail "two inputs"
+[[ $(value points_out twice.json) == 120000 && $(value quantum twice.json) == 0.01 ]] || fail "two inputs"
 is_sound other.lpc
 
 # Of several inputs, what has no colours is white beside what has; the other way round nobody can know in time.
@@ -100,8 +100,8 @@ is_sound mesh.lpc
 
 # Killed at any moment, the file that was there is still there, and what lies beside it is swept away by the next build.
 cp gyroid.lpc kept.lpc
-run 0 make gyroid -n 1M -o large.ply
-for seconds in 0.05 0.2 0.4 0.6 0.9; do
+run 0 make gyroid -n 400k -o large.ply
+for seconds in 0.05 0.2 0.5; do
   "$conic" layer large.ply -o kept.lpc --memory 64 &
   sleep $seconds
   kill -9 $! 2> /dev/null

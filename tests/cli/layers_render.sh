@@ -23,7 +23,7 @@ same_picture() { # JSON JSON WHAT
   [[ -n $(hashes "$1") && $(hashes "$1") == "$(hashes "$2")" ]] || fail "$3: another picture"
 }
 
-run 0 make knot -n 60k -o knot.ply
+run 0 make knot -n 24k -o knot.ply
 run 0 layer knot.ply -o knot.lpc --cloud-size 256
 "$1/scripts/terrain-mesh" 50 50 > hill.obj
 run 0 hybrid hill.obj -o hill.chy
@@ -50,7 +50,7 @@ grep -q '^conic: error: knot.lpc: cannot be drawn: no point passes --where$' err
 run 0 render knot.lpc -o one.pfm --size 8x8 --where 'x > 0' --eye 0,0,99 --azimuth 90
 # Beside other inputs, and where every splat is to be known, it is read whole.
 run 0 render knot.lpc knot.lpc -o both.pfm --size 64x64 --json both.json
-[[ $(value splats_in both.json) == 120000 ]] || fail "two clouds"
+[[ $(value splats_in both.json) == 48000 ]] || fail "two clouds"
 run 0 explain knot.lpc --size 64x64 --pixel 32,32 --json explain.json
 run 2 explain knot.lpc --size 64x64 --pixel 32,32 --error 2
 run 2 verify knot.lpc --size 64x64 --budget 5000
@@ -177,7 +177,7 @@ run 0 render $site/knot.lpc -o url.pfm $picture --deadline 100 --json url.json
 same_picture all.json url.json "a deadline that is far"
 
 # A slow line, which all requests share, and a deadline: coarser, and said so.
-python3 "$1/tests/cli/slow_server.py" "$PWD" 100000 > slow.port &
+python3 "$1/tests/cli/slow_server.py" "$PWD" 40000 > slow.port &
 slow_pid=$!
 trap 'stop_nginx $nginx_pid; kill $slow_pid 2> /dev/null; rm -rf "$work"' EXIT
 for _ in {1..100}; do

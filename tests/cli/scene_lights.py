@@ -6,7 +6,7 @@ import os
 import re
 import sys
 
-N_VIEWS, SIZE, FOCAL = 30, 240, 300.0
+N_VIEWS, SIZE, FOCAL = 30, 120, 150.0
 PLACES = [(0.9 * math.cos(i), 0.0, 0.9 * math.sin(2.3 * i)) for i in range(20)]
 
 

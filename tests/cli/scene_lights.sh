@@ -22,9 +22,9 @@ alike() { # NAME MOST-RATIO options …
     fail "$name: views differ by a factor of $found"
 }
 
-alike lamp 1.03 --sky 0,0,0 --light lamp:0,1,0:1:2x0.1:0,-1,0 --accumulate 16
-alike "lamp with its own H" 1.03 --sky 0,0,0 --light lamp:0,1,0:1:2x0.1:0,-1,0:1,0,1 --accumulate 16
-alike "slanting lamp" 1.03 --sky 0,0,0 --light lamp:1,1,0:1:2x0.1:-1,-1,0 --accumulate 16
+alike lamp 1.03 --sky 0,0,0 --light lamp:0,1,0:1:2x0.1:0,-1,0 --accumulate 24
+alike "lamp with its own H" 1.03 --sky 0,0,0 --light lamp:0,1,0:1:2x0.1:0,-1,0:1,0,1 --accumulate 24
+alike "slanting lamp" 1.03 --sky 0,0,0 --light lamp:1,1,0:1:2x0.1:-1,-1,0 --accumulate 24
 alike hemisphere 1.0001 --sky 1,1,1:0.1,0.1,0.1 --light none
 alike "sky and lamp, occluded" 1.03 --sky 1,1,1:0.1,0.1,0.1 --light lamp:0,1,0:1:2x0.1:0,-1,0 --accumulate 4 --ao 4
 alike sun 1.0001 --sky 0.1,0.1,0.1 --light 1,2,0

@@ -38,7 +38,7 @@ told_once_ill() { # as told_once
 large=("${frames[@]}" -q --size 1400x1100 --compression none)
 told_once_ill err7 3 4 'ill.out/d.000.*cannot write' disk "${large[@]}" -o ill.out/d.exr & jobs+=" $!"
 told_once_ill err8 3 3 'knot.ply' path "${frames[@]}" -o ill.out/p.pfm & jobs+=" $!"
-if ! grep -q '^CONIC_SANITIZE:[A-Z]*=.' "$3/CMakeCache.txt"; then
+if [[ ! $sanitized ]]; then
   told_once_ill err9 2 4 'memory' memory "${samples[@]}" -q --size 4000x3000 -o ill.out/m.exr & jobs+=" $!"
 fi
 

@@ -1,5 +1,6 @@
 /* The renderer against the oracle on scenes that are hard on it. */
 #include "tests/support/examine.h"
+#include "tests/support/sanitized.h"
 
 static void print_outcome(const char *name, const outcome *o) {
   printf("%s:", name);
@@ -171,11 +172,6 @@ static void test_frontal_wall(fixture *f) {
     check_agreement(f, "wall", 0.005);
   }
 }
-#ifdef __SANITIZE_ADDRESS__
-enum { IS_SANITIZED = 1 };
-#else
-enum { IS_SANITIZED = 0 };
-#endif
 
 int main(void) {
   fixture f = fixture_open(2);

@@ -1,11 +1,13 @@
 # What the tests of the program share: sourced with the script's own arguments, it moves to an empty folder that goes away
-# with the script. $conic is the program, $failures what `fail` has counted.
+# with the script. $conic is the program, $failures what `fail` has counted; $sanitized says what sanitizers the build
+# has, under which all takes ten times as long.
 
 conic=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
 failures=0
+sanitized=$(sed -n 's/^CONIC_SANITIZE:[A-Z]*=//p' "$3/CMakeCache.txt")
 
 fail() {
   echo "FAILED: $*"

@@ -1,6 +1,9 @@
 /* Thinning and densifying: fewer points or more of them, and the same surface. */
 #include "core/estimate/neighbours.h"
+#include "tests/support/sanitized.h"
 #include "tests/support/surface_shapes.h"
+
+enum { N_SAMPLES = IS_SANITIZED ? 1200 : 6000 };
 
 static double greatest_distance(shape s, const conic_splats *splats) {
   double greatest = 0.0;
@@ -39,23 +42,23 @@ static double hausdorff(conic_surface *a, const conic_splats *b_points, const co
 }
 
 static void check_thin_count(conic_context *context) {
-  conic_splats samples = shape_sample(context, SHAPE_TORUS, 6000, 0.0, 4), thinned, again, random;
+  conic_splats samples = shape_sample(context, SHAPE_TORUS, N_SAMPLES, 0.0, 4), thinned, again, random;
   conic_surface_options options;
   conic_thin_options wanted;
   conic_surface_report report;
   conic_surface_options_init(&options);
   conic_thin_options_init(&wanted);
-  wanted.count = 1500;
+  wanted.count = N_SAMPLES / 4;
   conic_surface *surface = shape_surface(context, &samples, &options);
   CHECK_OK(conic_surface_thin(surface, &wanted, &thinned, &report));
-  CHECK(thinned.count == 1500 && report.n_out == 1500 && report.n_in == 6000);
+  CHECK(thinned.count == wanted.count && report.n_out == wanted.count && report.n_in == N_SAMPLES);
   CHECK(is_subset(&thinned, &samples));
   double error = hausdorff(surface, &thinned, &options, context);
   /* The same number chosen at random, as a yardstick. */
-  random = shape_sample(context, SHAPE_TORUS, 6000, 0.0, 4);
-  CHECK_OK(conic_splats_thin(context, &random, 1500, 1));
+  random = shape_sample(context, SHAPE_TORUS, N_SAMPLES, 0.0, 4);
+  CHECK_OK(conic_splats_thin(context, &random, N_SAMPLES / 4, 1));
   double random_error = hausdorff(surface, &random, &options, context);
-  printf("6000 to 1500: Hausdorff distance %.2g, chosen at random %.2g; %zu measures\n", error, random_error,
+  printf("to a quarter: Hausdorff distance %.2g, chosen at random %.2g; %zu measures\n", error, random_error,
          report.n_evaluations);
   CHECK(error < 0.5 * random_error);
   conic_context *one = check_context(1);
@@ -74,15 +77,15 @@ static void check_thin_count(conic_context *context) {
 }
 
 static void check_thin_error(conic_context *context) {
-  conic_splats samples = shape_sample(context, SHAPE_TORUS, 6000, 0.0, 4), thinned;
+  conic_splats samples = shape_sample(context, SHAPE_TORUS, N_SAMPLES, 0.0, 4), thinned;
   conic_surface_options options;
   conic_thin_options wanted;
   conic_surface_report report;
   conic_surface_options_init(&options);
   conic_thin_options_init(&wanted);
-  size_t before = 6000;
+  size_t before = N_SAMPLES;
   conic_surface *surface = shape_surface(context, &samples, &options);
-  for (wanted.max_error = 3e-4; wanted.max_error < 4e-3; wanted.max_error *= 10.0) {
+  for (wanted.max_error = 3e-4; wanted.max_error < (IS_SANITIZED ? 1e-3 : 4e-3); wanted.max_error *= 10.0) {
     CHECK_OK(conic_surface_thin(surface, &wanted, &thinned, &report));
     double error = hausdorff(surface, &thinned, &options, context);
     printf("within %.0e: %zu left, Hausdorff distance %.2g\n", wanted.max_error, thinned.count, error);

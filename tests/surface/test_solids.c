@@ -2,6 +2,7 @@
 #include "conic/csg.h"
 #include "conic/scene.h"
 #include "tests/support/check.h"
+#include "tests/support/sanitized.h"
 
 static const double cutoff = 1.5;
 
@@ -186,11 +187,13 @@ int main(void) {
   const shape biting_ball = {CONIC_SCENE_SPHERE, {0.9, 0.7, 0.8}}, far_cube = {CONIC_SCENE_CUBE, {1e6, 5e6, 0.25}};
   const shape ball_at_corners = {CONIC_SCENE_SPHERE, {0.5, 0.5, 0.5}};
   const shape far_ball = {CONIC_SCENE_SPHERE, {1e6 + 0.9, 5e6 + 0.7, 1.05}};
-  try_pair(context, &ball, &other_ball, 0.011);
-  try_pair(context, &cube, &other_cube, 1e-5);
   try_pair(context, &cube, &biting_ball, 0.011);
-  try_pair(context, &cube, &ball_at_corners, 0.012);
-  try_pair(context, &far_cube, &far_ball, 0.011);
+  if (!IS_SANITIZED) {
+    try_pair(context, &ball, &other_ball, 0.011);
+    try_pair(context, &cube, &other_cube, 1e-5);
+    try_pair(context, &cube, &ball_at_corners, 0.012);
+    try_pair(context, &far_cube, &far_ball, 0.011);
+  }
   test_normals(context);
   conic_context_destroy(context);
   return check_result();

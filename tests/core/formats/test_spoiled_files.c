@@ -4,6 +4,7 @@
 #include "core/files/mapping.h"
 #include "core/formats/material_file.h"
 #include "tests/support/random_numbers.h"
+#include "tests/support/sanitized.h"
 #include "tests/support/seeds.h"
 
 /* An allocator that knows how much is out. */
@@ -191,11 +192,7 @@ static int check(conic_context *context, const seed *from, const unsigned char *
 
 /* So many places of a file are spoiled, and cut at: of small files each; fewer under a sanitizer, which takes ten times
  * as long. Of large files it spoils others, so that both together try more. Fuzzing tries more still. */
-#ifdef __SANITIZE_ADDRESS__
-enum { N_PLACES = 30, N_CUTS = 60, IS_SANITIZED = 1 };
-#else
-enum { N_PLACES = 90, N_CUTS = 500, IS_SANITIZED = 0 };
-#endif
+enum { N_PLACES = IS_SANITIZED ? 16 : 90, N_CUTS = IS_SANITIZED ? 32 : 500, N_RANDOM = IS_SANITIZED ? 20 : 50 };
 
 static void test_cut(conic_context *context, const seed *from) {
   CHECK(check(context, from, from->bytes, from->n_bytes));
@@ -230,7 +227,7 @@ static void test_replaced(conic_context *context, const seed *from) {
 static void test_random(conic_context *context, const seed *from) {
   uint64_t state = 7;
   unsigned char bytes[600];
-  for (int run = 0; run < 50; run++) {
+  for (int run = 0; run < N_RANDOM; run++) {
     size_t n_kept = (size_t)(run % 10) * from->n_bytes / 10;
     n_kept = n_kept < sizeof bytes ? n_kept : sizeof bytes;
     for (size_t i = 0; i < sizeof bytes; i++)

@@ -278,7 +278,7 @@ static void test_mended(conic_context *context) {
   for (int i = 0; i < set->n; i++) {
     const seed *from = &set->seeds[i];
     unsigned char *bytes = malloc(from->n_bytes);
-    for (int run = 0; run < 1500 && bytes; run++) {
+    for (int run = 0; run < 500 && bytes; run++) {
       conic_hybrid *hybrid;
       memcpy(bytes, from->bytes, from->n_bytes);
       size_t at = i + 1 < set->n ? 8 + (size_t)(random_unit(&state) * (double)(from->n_bytes - 8))
