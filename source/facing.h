@@ -2,7 +2,6 @@
 #ifndef CONIC_FACING_H
 #define CONIC_FACING_H
 
-#include "conic/camera.h"
 #include "conic/splats.h"
 
 typedef struct conic_facing {

@@ -6,11 +6,6 @@
 #ifndef CONIC_ACCUMULATE_H
 #define CONIC_ACCUMULATE_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/camera.h"
-#include "conic/context.h"
 #include "conic/image.h"
 
 CONIC_BEGIN_C

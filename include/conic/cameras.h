@@ -4,11 +4,7 @@
 #ifndef CONIC_CAMERAS_H
 #define CONIC_CAMERAS_H
 
-#include <stddef.h>
-#include <stdint.h>
-
 #include "conic/camera.h"
-#include "conic/context.h"
 
 CONIC_BEGIN_C
 

@@ -3,12 +3,6 @@
 #ifndef CONIC_COLORING_H
 #define CONIC_COLORING_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/context.h"
-#include "conic/model.h"
-#include "conic/splats.h"
 #include "conic/triangles.h"
 
 CONIC_BEGIN_C

@@ -4,14 +4,6 @@
 #ifndef CONIC_CONTRIBUTIONS_H
 #define CONIC_CONTRIBUTIONS_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/camera.h"
-#include "conic/context.h"
-#include "conic/image.h"
-#include "conic/render.h"
-#include "conic/splats.h"
 #include "conic/triangles.h"
 
 CONIC_BEGIN_C

@@ -4,7 +4,6 @@
 #define CONIC_DIAGNOSIS_H
 
 #include "conic/gaussian_judge.h"
-#include "conic/triangles.h"
 
 CONIC_BEGIN_C
 

@@ -4,11 +4,6 @@
 #ifndef CONIC_GATHER_H
 #define CONIC_GATHER_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/camera.h"
-#include "conic/context.h"
 #include "conic/image.h"
 
 CONIC_BEGIN_C

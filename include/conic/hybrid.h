@@ -3,16 +3,7 @@
 #ifndef CONIC_HYBRID_H
 #define CONIC_HYBRID_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/camera.h"
-#include "conic/context.h"
-#include "conic/image.h"
 #include "conic/layers_draw.h"
-#include "conic/render.h"
-#include "conic/splats.h"
-#include "conic/triangles.h"
 
 CONIC_BEGIN_C
 

@@ -3,10 +3,6 @@
 #ifndef CONIC_LAYERS_H
 #define CONIC_LAYERS_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/context.h"
 #include "conic/splats.h"
 
 CONIC_BEGIN_C

@@ -3,17 +3,8 @@
 #ifndef CONIC_LAYERS_DRAW_H
 #define CONIC_LAYERS_DRAW_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/camera.h"
 #include "conic/coloring.h"
-#include "conic/context.h"
-#include "conic/image.h"
 #include "conic/layers.h"
-#include "conic/model.h"
-#include "conic/render.h"
-#include "conic/splats.h"
 #include "conic/transparency.h"
 
 CONIC_BEGIN_C

@@ -3,14 +3,7 @@
 #ifndef CONIC_OCTREE_H
 #define CONIC_OCTREE_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/camera.h"
-#include "conic/context.h"
-#include "conic/image.h"
 #include "conic/render.h"
-#include "conic/splats.h"
 
 CONIC_BEGIN_C
 

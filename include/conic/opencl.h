@@ -4,8 +4,6 @@
 #ifndef CONIC_OPENCL_H
 #define CONIC_OPENCL_H
 
-#include <stdint.h>
-
 #include "conic/gaussian_render.h"
 #include "conic/render.h"
 

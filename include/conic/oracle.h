@@ -6,14 +6,6 @@
 #ifndef CONIC_ORACLE_H
 #define CONIC_ORACLE_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/camera.h"
-#include "conic/context.h"
-#include "conic/image.h"
-#include "conic/render.h"
-#include "conic/splats.h"
 #include "conic/triangles.h"
 
 CONIC_BEGIN_C

@@ -8,14 +8,6 @@
 #ifndef CONIC_PATCHES_H
 #define CONIC_PATCHES_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/camera.h"
-#include "conic/context.h"
-#include "conic/image.h"
-#include "conic/render.h"
-#include "conic/splats.h"
 #include "conic/surface.h"
 
 CONIC_BEGIN_C

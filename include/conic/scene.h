@@ -2,10 +2,6 @@
 #ifndef CONIC_SCENE_H
 #define CONIC_SCENE_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/context.h"
 #include "conic/splats.h"
 
 CONIC_BEGIN_C

@@ -7,18 +7,9 @@
 #ifndef CONIC_SHOT_H
 #define CONIC_SHOT_H
 
-#include <stddef.h>
-#include <stdint.h>
-
 #include "conic/accumulate.h"
-#include "conic/camera.h"
-#include "conic/context.h"
-#include "conic/gaussian_render.h"
-#include "conic/image.h"
 #include "conic/lighting.h"
 #include "conic/motion.h"
-#include "conic/render.h"
-#include "conic/source.h"
 
 CONIC_BEGIN_C
 

@@ -4,22 +4,10 @@
 #ifndef CONIC_SOURCE_H
 #define CONIC_SOURCE_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/camera.h"
-#include "conic/coloring.h"
-#include "conic/context.h"
 #include "conic/gaussian_render.h"
 #include "conic/hybrid.h"
-#include "conic/image.h"
-#include "conic/layers_draw.h"
 #include "conic/octree.h"
 #include "conic/patches.h"
-#include "conic/render.h"
-#include "conic/splats.h"
-#include "conic/transparency.h"
-#include "conic/triangles.h"
 
 CONIC_BEGIN_C
 

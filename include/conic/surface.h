@@ -7,13 +7,8 @@
 #ifndef CONIC_SURFACE_H
 #define CONIC_SURFACE_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "conic/context.h"
 #include "conic/model.h"
 #include "conic/render.h"
-#include "conic/splats.h"
 
 CONIC_BEGIN_C
 

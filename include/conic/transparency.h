@@ -2,7 +2,6 @@
 #ifndef CONIC_TRANSPARENCY_H
 #define CONIC_TRANSPARENCY_H
 
-#include "conic/render.h"
 #include "conic/triangles.h"
 
 CONIC_BEGIN_C
