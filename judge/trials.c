@@ -306,10 +306,9 @@ static conic_status explain_picture(trial_run *r, conic_diagnosis *found, int ro
 conic_status conic_trials_run(conic_trials *t, conic_diagnosis *found, int room, int *n_found) {
   const size_t n = t->samples->n;
   trial_run r = {.t = t, .drawn_suspect = -2};
-  r.drawn = conic_memory_allocate(t->context, n, sizeof *r.drawn);
-  r.finished = conic_memory_allocate(t->context, n, sizeof *r.finished);
-  conic_channels *ours = conic_memory_allocate(t->context, n, sizeof *ours);
-  conic_status status = r.drawn && r.finished && ours ? CONIC_OK : CONIC_ERROR_MEMORY;
+  conic_channels *ours;
+  conic_status status =
+      conic_memory_allocate_these(t->context, CONIC_ROOM(r.drawn, n), CONIC_ROOM(r.finished, n), CONIC_ROOM(ours, n));
   trial right = {.first = -1, .second = -1};
   if (status == CONIC_OK)
     status = try_planted(&r, &right);

@@ -89,9 +89,7 @@ static conic_status find_lamp_depths(lamp_lighting *work) {
   conic_light_work *l = work->l;
   const float *z = l->image->planes[CONIC_PLANE_Z];
   size_t n = conic_image_pixels(l->image);
-  work->depth = conic_memory_allocate(l->context, n, sizeof *work->depth);
-  l->lamp_power = conic_memory_allocate_zeroed(l->context, n, sizeof *l->lamp_power);
-  if (!work->depth || !l->lamp_power)
+  if (conic_memory_allocate_these(l->context, CONIC_ROOM(work->depth, n), CONIC_ZEROED(l->lamp_power, n)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < l->receivers.count; i++)
     l->visible[i] = z[l->receivers.pixel[i]];

@@ -212,9 +212,8 @@ conic_status conic_lamp_receive(conic_map_room *room, const conic_lamp_point *po
     return CONIC_OK;
   for (int axis = 0; axis < 3; axis++)
     work.from_origin[axis] = point->place[axis] - room->receivers->origin[axis];
-  work.side = conic_memory_allocate(room->context, count, 1);
-  work.of_items = conic_memory_allocate(room->context, n_items, sizeof *work.of_items);
-  conic_status status = work.side && work.of_items ? CONIC_OK : CONIC_ERROR_MEMORY;
+  conic_status status =
+      conic_memory_allocate_these(room->context, CONIC_ROOM(work.side, count), CONIC_ROOM(work.of_items, n_items));
   if (status == CONIC_OK)
     status = receive_sides(&work, room, point, n_items);
   conic_memory_release_these(room->context, work.of_items, work.side);

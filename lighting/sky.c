@@ -126,10 +126,9 @@ static conic_status fill_sky(const char *who, const conic_image *image, const do
   conic_framing_rotation(&own, sky->rows);
   sky->width = image->width;
   sky->height = image->height;
-  sky->row_sums = conic_memory_allocate(sky->context, height + 1, sizeof *sky->row_sums);
-  sky->pixel_sums = conic_memory_allocate(sky->context, (width + 1) * height, sizeof *sky->pixel_sums);
-  sky->color = conic_memory_allocate(sky->context, width * height, 3 * sizeof *sky->color);
-  if (!sky->row_sums || !sky->pixel_sums || !sky->color)
+  if (conic_memory_allocate_these(sky->context, CONIC_ROOM(sky->row_sums, height + 1),
+                                  CONIC_ROOM(sky->pixel_sums, (width + 1) * height),
+                                  CONIC_ROOM(sky->color, 3 * (width * height))) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   if (!take_sky_colors(image, sky))
     return conic_fail(sky->context, CONIC_ERROR_INPUT, "%s: a colour is not finite, or above 1e12", who);

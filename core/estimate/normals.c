@@ -222,16 +222,14 @@ static conic_status orient_with(conic_context *context, linking *l, connected_pa
 conic_status conic_normals_orient(conic_context *context, conic_neighbourhood *neighbourhood) {
   size_t n_slots = neighbourhood->tree.n_slots;
   linking l = {neighbourhood, neighbourhood->n_neighbours < LINKS ? neighbourhood->n_neighbours : LINKS};
-  l.doubt = conic_memory_allocate(context, n_slots, LINKS * sizeof *l.doubt);
-  l.opposite = conic_memory_allocate(context, n_slots, sizeof *l.opposite);
-  l.left_out = conic_memory_allocate(context, n_slots, sizeof *l.left_out);
-  l.parent = conic_memory_allocate(context, n_slots + 1, sizeof *l.parent);
-  l.flip = conic_memory_allocate(context, n_slots + 1, sizeof *l.flip);
-  connected_part *parts = conic_memory_allocate_zeroed(context, n_slots + 1, sizeof *parts);
-  size_t *starts = conic_memory_allocate_zeroed(context, STEPS + 2, sizeof *starts);
-  normal_link *order = conic_memory_allocate(context, n_slots, LINKS * sizeof *order);
-  conic_status status = CONIC_ERROR_MEMORY;
-  if (l.doubt && l.opposite && l.left_out && l.parent && l.flip && parts && starts && order)
+  connected_part *parts;
+  size_t *starts;
+  normal_link *order;
+  conic_status status = conic_memory_allocate_these(
+      context, CONIC_ROOM(l.doubt, LINKS * n_slots), CONIC_ROOM(l.opposite, n_slots), CONIC_ROOM(l.left_out, n_slots),
+      CONIC_ROOM(l.parent, n_slots + 1), CONIC_ROOM(l.flip, n_slots + 1), CONIC_ZEROED(parts, n_slots + 1),
+      CONIC_ZEROED(starts, STEPS + 2), CONIC_ROOM(order, LINKS * n_slots));
+  if (status == CONIC_OK)
     status = orient_with(context, &l, parts, starts, order);
   conic_memory_release_these(context, order, starts, parts, l.flip, l.parent, l.left_out, l.opposite, l.doubt);
   return status;

@@ -162,10 +162,9 @@ conic_status conic_scatter_find(conic_context *context, conic_neighbourhood *nei
   float *scores[2];
   if (neighbourhood->n_neighbours == 0)
     return CONIC_OK;
-  scores[0] = conic_memory_allocate(context, n_slots, sizeof(float));
-  scores[1] = conic_memory_allocate(context, n_slots, sizeof(float));
-  conic_status status = CONIC_ERROR_MEMORY;
-  if (scores[0] && scores[1])
+  conic_status status =
+      conic_memory_allocate_these(context, CONIC_ROOM(scores[0], n_slots), CONIC_ROOM(scores[1], n_slots));
+  if (status == CONIC_OK)
     status = find_with(context, &work, scores, from, to);
   conic_memory_release_these(context, scores[0], scores[1]);
   return status;

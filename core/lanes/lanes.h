@@ -14,12 +14,24 @@
 #include <immintrin.h>
 #endif
 
+/* How many there are, and how the instruction set calls its own operations and vectors. */
 #if defined(__AVX512F__)
 #define CONIC_LANES 16
+#define CONIC_NATIVE(operation) _mm512_##operation
+typedef __m512 native_lanes;
+typedef __m512d native_wide;
 #elif defined(__AVX2__)
 #define CONIC_LANES 8
+#define CONIC_NATIVE(operation) _mm256_##operation
+typedef __m256 native_lanes;
+typedef __m256d native_wide;
 #else
 #define CONIC_LANES 4
+#if defined(__SSE2__)
+#define CONIC_NATIVE(operation) _mm_##operation
+typedef __m128 native_lanes;
+typedef __m128d native_wide;
+#endif
 #endif
 
 #define CONIC_BLOCK_ROWS 4
@@ -166,18 +178,6 @@ CONIC_INLINE unsigned lanes_count(lanes_mask mask) {
   return (unsigned)__builtin_popcount(mask);
 }
 
-CONIC_INLINE lanes lanes_max(lanes a, lanes b) {
-  return (lanes)_mm512_max_ps((__m512)a, (__m512)b);
-}
-
-CONIC_INLINE lanes lanes_min(lanes a, lanes b) {
-  return (lanes)_mm512_min_ps((__m512)a, (__m512)b);
-}
-
-CONIC_INLINE lanes lanes_sqrt(lanes a) {
-  return (lanes)_mm512_sqrt_ps((__m512)a);
-}
-
 #else
 
 typedef int_lanes lanes_mask;
@@ -258,18 +258,6 @@ CONIC_INLINE unsigned lanes_count(lanes_mask mask) {
   return (unsigned)__builtin_popcount(lanes_bits(mask));
 }
 
-CONIC_INLINE lanes lanes_max(lanes a, lanes b) {
-  return (lanes)_mm256_max_ps((__m256)a, (__m256)b);
-}
-
-CONIC_INLINE lanes lanes_min(lanes a, lanes b) {
-  return (lanes)_mm256_min_ps((__m256)a, (__m256)b);
-}
-
-CONIC_INLINE lanes lanes_sqrt(lanes a) {
-  return (lanes)_mm256_sqrt_ps((__m256)a);
-}
-
 #elif defined(__SSE2__)
 
 CONIC_INLINE int lanes_any(lanes_mask mask) {
@@ -283,18 +271,6 @@ CONIC_INLINE unsigned lanes_bits(lanes_mask mask) {
 CONIC_INLINE unsigned lanes_count(lanes_mask mask) {
   unsigned bits = lanes_bits(mask);
   return (unsigned)(UINT64_C(0x4332322132212110) >> (4 * bits)) & 7u; /* number of bits of each of 16 patterns */
-}
-
-CONIC_INLINE lanes lanes_max(lanes a, lanes b) {
-  return (lanes)_mm_max_ps((__m128)a, (__m128)b);
-}
-
-CONIC_INLINE lanes lanes_min(lanes a, lanes b) {
-  return (lanes)_mm_min_ps((__m128)a, (__m128)b);
-}
-
-CONIC_INLINE lanes lanes_sqrt(lanes a) {
-  return (lanes)_mm_sqrt_ps((__m128)a);
 }
 
 #else
@@ -311,6 +287,25 @@ CONIC_INLINE unsigned lanes_count(lanes_mask mask) {
   return (unsigned)-(mask[0] + mask[1] + mask[2] + mask[3]);
 }
 
+#endif
+#endif
+
+#if defined(CONIC_NATIVE)
+
+CONIC_INLINE lanes lanes_max(lanes a, lanes b) {
+  return (lanes)CONIC_NATIVE(max_ps)((native_lanes)a, (native_lanes)b);
+}
+
+CONIC_INLINE lanes lanes_min(lanes a, lanes b) {
+  return (lanes)CONIC_NATIVE(min_ps)((native_lanes)a, (native_lanes)b);
+}
+
+CONIC_INLINE lanes lanes_sqrt(lanes a) {
+  return (lanes)CONIC_NATIVE(sqrt_ps)((native_lanes)a);
+}
+
+#else
+
 CONIC_INLINE lanes lanes_max(lanes a, lanes b) {
   return lanes_select(a > b, a, b);
 }
@@ -323,7 +318,6 @@ CONIC_INLINE lanes lanes_sqrt(lanes a) {
   return (lanes){__builtin_sqrtf(a[0]), __builtin_sqrtf(a[1]), __builtin_sqrtf(a[2]), __builtin_sqrtf(a[3])};
 }
 
-#endif
 #endif
 
 CONIC_INLINE int_lanes lanes_select_ints(lanes_mask mask, int_lanes yes, int_lanes no) {

@@ -126,54 +126,18 @@ CONIC_INLINE int wide_any(wide_mask mask) {
 }
 
 /* a > b ? a : b and a < b ? a : b; the square root; in which lanes a > b holds. a ≤ b is false where one is NaN. */
-#if defined(__AVX512F__)
+#if defined(CONIC_NATIVE)
 
 CONIC_INLINE wide wide_max(wide a, wide b) {
-  return (wide)_mm512_max_pd((__m512d)a, (__m512d)b);
+  return (wide)CONIC_NATIVE(max_pd)((native_wide)a, (native_wide)b);
 }
 
 CONIC_INLINE wide wide_min(wide a, wide b) {
-  return (wide)_mm512_min_pd((__m512d)a, (__m512d)b);
+  return (wide)CONIC_NATIVE(min_pd)((native_wide)a, (native_wide)b);
 }
 
 CONIC_INLINE wide wide_sqrt(wide a) {
-  return (wide)_mm512_sqrt_pd((__m512d)a);
-}
-
-CONIC_INLINE lanes_mask lanes_greater_double(const doubles *a, double b) {
-  __mmask8 low = _mm512_cmp_pd_mask((__m512d)a->half[0], _mm512_set1_pd(b), _CMP_GT_OQ);
-  __mmask8 high = _mm512_cmp_pd_mask((__m512d)a->half[1], _mm512_set1_pd(b), _CMP_GT_OQ);
-  return (lanes_mask)(low | high << 8);
-}
-
-#else
-
-#if defined(__AVX2__)
-
-CONIC_INLINE wide wide_max(wide a, wide b) {
-  return (wide)_mm256_max_pd((__m256d)a, (__m256d)b);
-}
-
-CONIC_INLINE wide wide_min(wide a, wide b) {
-  return (wide)_mm256_min_pd((__m256d)a, (__m256d)b);
-}
-
-CONIC_INLINE wide wide_sqrt(wide a) {
-  return (wide)_mm256_sqrt_pd((__m256d)a);
-}
-
-#elif defined(__SSE2__)
-
-CONIC_INLINE wide wide_max(wide a, wide b) {
-  return (wide)_mm_max_pd((__m128d)a, (__m128d)b);
-}
-
-CONIC_INLINE wide wide_min(wide a, wide b) {
-  return (wide)_mm_min_pd((__m128d)a, (__m128d)b);
-}
-
-CONIC_INLINE wide wide_sqrt(wide a) {
-  return (wide)_mm_sqrt_pd((__m128d)a);
+  return (wide)CONIC_NATIVE(sqrt_pd)((native_wide)a);
 }
 
 #else
@@ -191,6 +155,16 @@ CONIC_INLINE wide wide_sqrt(wide a) {
 }
 
 #endif
+
+#if defined(__AVX512F__)
+
+CONIC_INLINE lanes_mask lanes_greater_double(const doubles *a, double b) {
+  __mmask8 low = _mm512_cmp_pd_mask((__m512d)a->half[0], _mm512_set1_pd(b), _CMP_GT_OQ);
+  __mmask8 high = _mm512_cmp_pd_mask((__m512d)a->half[1], _mm512_set1_pd(b), _CMP_GT_OQ);
+  return (lanes_mask)(low | high << 8);
+}
+
+#else
 
 CONIC_INLINE lanes_mask lanes_greater_double(const doubles *a, double b) {
   return lanes_join_int(__builtin_convertvector(a->half[0] > b, wide_ints),

@@ -84,9 +84,8 @@ static const char *lay_out_codes(conic_octree *octree) {
 
 conic_status conic_octree_lay_out(conic_octree *octree, const char **wrong) {
   *wrong = NULL;
-  octree->end = conic_memory_allocate(octree->context, octree->n_nodes, sizeof *octree->end);
-  octree->first_leaf = conic_memory_allocate(octree->context, octree->n_nodes + 1, sizeof *octree->first_leaf);
-  if (!octree->end || !octree->first_leaf)
+  if (conic_memory_allocate_these(octree->context, CONIC_ROOM(octree->end, octree->n_nodes),
+                                  CONIC_ROOM(octree->first_leaf, octree->n_nodes + 1)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   *wrong = lay_out_codes(octree);
   return CONIC_OK;

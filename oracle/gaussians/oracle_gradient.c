@@ -64,10 +64,9 @@ static conic_status sort_shown(oracle_gradient_job *j) {
   const size_t n = j->set->count;
   j->across = ((size_t)j->view.camera->width + EDGE - 1) / EDGE;
   j->down = ((size_t)j->view.camera->height + EDGE - 1) / EDGE;
-  j->shown = conic_memory_allocate(j->context, n, sizeof *j->shown);
-  j->begin = conic_memory_allocate_zeroed(j->context, j->across * j->down + 1, sizeof *j->begin);
-  shown_rank *ranks = conic_memory_allocate(j->context, n, sizeof *ranks);
-  conic_status status = j->shown && j->begin && ranks ? CONIC_OK : CONIC_ERROR_MEMORY;
+  shown_rank *ranks;
+  conic_status status = conic_memory_allocate_these(
+      j->context, CONIC_ROOM(j->shown, n), CONIC_ZEROED(j->begin, j->across * j->down + 1), CONIC_ROOM(ranks, n));
   if (status == CONIC_OK)
     status = conic_parallel_told(j->context, "gradient", 0.0, 0.1, (n + SHOW_RUN - 1) / SHOW_RUN, show_gaussians, j);
   size_t n_shown = 0;

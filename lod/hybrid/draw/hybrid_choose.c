@@ -378,15 +378,11 @@ static size_t place_errors(const hybrid_planning *p) {
 static conic_status begin_plan(hybrid_planning *p) {
   const conic_hybrid *h = p->hybrid;
   conic_context *context = h->context;
-  p->first_errors = conic_memory_allocate(context, p->asked->n + p->asked->n_seen, sizeof *p->first_errors);
-  p->units = conic_memory_allocate(context, p->asked->n, sizeof *p->units);
-  p->levels = conic_memory_allocate(context, p->asked->n, sizeof *p->levels);
-  p->counts = conic_memory_allocate_zeroed(context, h->n_clusters, sizeof *p->counts);
-  p->below = conic_memory_allocate_zeroed(context, h->n_nodes, sizeof *p->below);
-  p->nodes = conic_memory_allocate(context, h->n_nodes, sizeof *p->nodes);
-  p->standing = conic_memory_allocate(context, h->n_clusters, sizeof *p->standing);
-  p->stages = conic_memory_allocate(context, h->n_clusters, sizeof *p->stages);
-  if (!p->first_errors || !p->units || !p->levels || !p->counts || !p->below || !p->nodes || !p->standing || !p->stages)
+  if (conic_memory_allocate_these(context, CONIC_ROOM(p->first_errors, p->asked->n + p->asked->n_seen),
+                                  CONIC_ROOM(p->units, p->asked->n), CONIC_ROOM(p->levels, p->asked->n),
+                                  CONIC_ZEROED(p->counts, h->n_clusters), CONIC_ZEROED(p->below, h->n_nodes),
+                                  CONIC_ROOM(p->nodes, h->n_nodes), CONIC_ROOM(p->standing, h->n_clusters),
+                                  CONIC_ROOM(p->stages, h->n_clusters)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < h->n_clusters; i++)
     p->stages[i] = CONIC_HYBRID_HIDDEN;

@@ -71,9 +71,8 @@ static void rank_levels(const conic_hybrid *h, const conic_hybrid_cluster *clust
 
 conic_status conic_hybrid_order_chunks(const conic_hybrid *h, uint32_t **order) {
   size_t n = conic_hybrid_count_chunks(h);
-  conic_radix_item *items = conic_memory_allocate(h->context, n, sizeof *items);
-  *order = conic_memory_allocate(h->context, n, sizeof **order);
-  conic_status status = items && *order ? CONIC_OK : CONIC_ERROR_MEMORY;
+  conic_radix_item *items;
+  conic_status status = conic_memory_allocate_these(h->context, CONIC_ROOM(items, n), CONIC_ROOM(*order, n));
   for (uint32_t i = 0; i < n && status == CONIC_OK; i++) {
     uint32_t key = i < h->n_levels ? 2 : i < h->n_levels + h->n_clusters ? 0 : 1;
     items[i] = (conic_radix_item){key, i};

@@ -300,9 +300,8 @@ static conic_status begin_choosing(conic_layers_picture *d) {
   status = d->needed && d->held ? choose_for_picture(d) : CONIC_ERROR_MEMORY;
   if (status != CONIC_OK)
     return status;
-  d->chosen = conic_memory_allocate(layers->context, d->cut.n, sizeof *d->chosen);
-  d->is_counted = conic_memory_allocate(layers->context, d->cut.n, sizeof *d->is_counted);
-  return d->chosen && d->is_counted ? CONIC_OK : CONIC_ERROR_MEMORY;
+  return conic_memory_allocate_these(layers->context, CONIC_ROOM(d->chosen, d->cut.n),
+                                     CONIC_ROOM(d->is_counted, d->cut.n));
 }
 
 conic_status conic_layers_picture_begin(conic_layers *layers, conic_renderer *renderer, const conic_camera *camera,
