@@ -1,6 +1,5 @@
 /* Splats that are drawn whole, with their dots turned to each picture's camera. */
-#ifndef CONIC_FACING_H
-#define CONIC_FACING_H
+#pragma once
 
 #include "conic/splats.h"
 
@@ -18,5 +17,3 @@ conic_status conic_facing_turn(conic_context *context, conic_facing *facing, con
                                const conic_splats **drawn);
 
 void conic_facing_end(conic_context *context, conic_facing *facing);
-
-#endif
