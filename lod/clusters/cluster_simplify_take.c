@@ -1,6 +1,6 @@
 /* Levels of what simplifying has left: each cluster's triangles and their borders. */
 
-#include "core/base/order.h"
+#include "core/base/radix.h"
 #include "lod/clusters/cluster_simplifier.h"
 
 /* --- borders --- */

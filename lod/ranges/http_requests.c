@@ -8,7 +8,7 @@
 
 #include "core/base/clock.h"
 #include "core/base/memory.h"
-#include "core/base/order.h"
+#include "core/base/radix.h"
 
 enum {
   JOINED_BYTES = 1 << 19, /* ranges are joined to requests of up to so many, */

@@ -7,7 +7,7 @@
  *
  * Decisions in doubt: each is followed the other way by itself, and what that changes is added up. */
 
-#include "core/base/order.h"
+#include "core/base/radix.h"
 #include "oracle/gaussians/oracle_gradient_job.h"
 
 #define UNIT ORACLE_FLOAT_UNIT
