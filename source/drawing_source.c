@@ -24,8 +24,8 @@ typedef struct drawing_source {
   size_t *ends;          /* of each input: where its splats, triangles, vertices and normals end */
   size_t n_inputs;       /* the vertices and the normals */
   conic_facing facing;
-  int has_moved;       /* something has moved, so that there is room for: */
-  conic_splats moved;  /* the splats in their present places, with places and axes of its own */
+  int has_moved;                   /* something has moved, so that there is room for: */
+  conic_splats moved;              /* the splats in their present places, with places and axes of its own */
   conic_triangles moved_triangles; /* the triangles in their present places, with places and normals of its own */
   conic_lean_drawing lean;         /* for pictures with an error or a budget */
 } drawing_source;
@@ -217,14 +217,13 @@ static conic_status choose_in_drawing(conic_source *source, const conic_camera *
   drawing_source *d = (drawing_source *)source;
   const conic_splats *splats = source->is_moved ? &d->moved : &d->splats;
   const conic_triangles *triangles = source->is_moved ? &d->moved_triangles : &d->triangles;
-  const conic_drawing rest = {splats, triangles};
-  conic_drawing all = rest;
+  conic_drawing all = {splats, triangles};
   conic_status status = conic_facing_turn(source->context, &d->facing, camera, &all.splats);
   source->choice.drawing = all;
   source->choice.is_all = 1;
   if (status != CONIC_OK || !(view->error_px > 0.0 || view->budget))
     return status;
-  return conic_lean_choose(source, &all, !d->facing.n_dots && !source->is_moved, camera, render, &d->lean);
+  return conic_lean_choose(source, &all, splats, camera, render, &d->lean);
 }
 
 /* The range of all splats, vertices and normals that an input has. */

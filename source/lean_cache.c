@@ -28,6 +28,7 @@ static void add_splats(conic_sha256 *sum, const conic_splats *s) {
   add_floats(sum, s->tangent_v, 3, s->count);
   add_floats(sum, s->color, 3, s->count);
   add_array(sum, s->opacity, s->count, sizeof(float));
+  add_array(sum, s->dot, s->count, sizeof(float));
   add_array(sum, s->clips, s->n_clips, sizeof *s->clips);
 }
 

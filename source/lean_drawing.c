@@ -10,6 +10,7 @@
 typedef struct lean_choosing {
   conic_source *source;
   const conic_drawing *all;
+  const conic_splats *unturned;
   const conic_camera *camera;
   const conic_render_options *render;
   conic_lean_drawing *lean;
@@ -57,14 +58,14 @@ static conic_status need_octree(const lean_choosing *c) {
   lean->cutoff = c->render->kernel.cutoff;
   conic_octree_options_init(&options);
   options.cutoff = lean->cutoff;
-  memcpy(copy.origin, c->all->splats->origin, sizeof copy.origin);
-  const conic_drawing splats = {.splats = c->all->splats};
+  memcpy(copy.origin, c->unturned->origin, sizeof copy.origin);
+  const conic_drawing splats = {.splats = c->unturned};
   char path[CONIC_LEAN_CACHE_PATH];
   void *kept = NULL;
   conic_status status = find_kept(c, &splats, "cot", read_octree, path, &kept);
   lean->octree = kept;
   if (status == CONIC_OK && !kept)
-    status = conic_splats_append(context, &copy, c->all->splats);
+    status = conic_splats_append(context, &copy, c->unturned);
   if (status == CONIC_OK && !kept)
     status = conic_octree_build(context, &copy, &options, &lean->octree);
   if (status == CONIC_OK && !kept && lean->cache)
@@ -240,13 +241,20 @@ static void tell_choice(const lean_choosing *c) {
             c->drawing.triangles->count, c->all->triangles->count, c->reached_px, 1e3 * c->lean->build_seconds);
 }
 
-conic_status conic_lean_choose(conic_source *source, const conic_drawing *all, int is_fixed, const conic_camera *camera,
-                               const conic_render_options *render, conic_lean_drawing *lean) {
+conic_status conic_lean_choose(conic_source *source, const conic_drawing *all, const conic_splats *unturned,
+                               const conic_camera *camera, const conic_render_options *render,
+                               conic_lean_drawing *lean) {
   const conic_source_view *view = &source->view;
-  lean_choosing c = {.source = source, .all = all, .camera = camera, .render = render, .lean = lean, .drawing = *all};
+  lean_choosing c = {.source = source,
+                     .all = all,
+                     .unturned = unturned,
+                     .camera = camera,
+                     .render = render,
+                     .lean = lean,
+                     .drawing = *all};
   conic_status status = settle_transparency(source, all);
   lean->is_alone = view->is_alone && !view->budget;
-  lean->is_cut = lean->is_alone || !is_fixed;
+  lean->is_cut = lean->is_alone || source->is_moved;
   const double built_before = lean->build_seconds;
   if (status == CONIC_OK && view->error_px > 0.0)
     status = choose_parts(&c, view->error_px, 0);

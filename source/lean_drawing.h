@@ -23,10 +23,11 @@ typedef struct conic_lean_drawing {
 } conic_lean_drawing;
 
 /* Fills in the choice for a picture with an error or a budget. Where nothing is left out, all is drawn, in its order.
- * `is_fixed`: the drawing is the same in all pictures. Errors: ARGUMENT (a budget that is too small), MEMORY,
+ * `unturned` are its splats with dots as they are kept. Errors: ARGUMENT (a budget that is too small), MEMORY,
  * CANCELLED, UNSUPPORTED (transparency). */
-conic_status conic_lean_choose(conic_source *source, const conic_drawing *all, int is_fixed, const conic_camera *camera,
-                               const conic_render_options *render, conic_lean_drawing *lean);
+conic_status conic_lean_choose(conic_source *source, const conic_drawing *all, const conic_splats *unturned,
+                               const conic_camera *camera, const conic_render_options *render,
+                               conic_lean_drawing *lean);
 /* How many of the splats that an eighth of the picture shows, about its middle, there are for one that an error of a
  * pixel leaves, after a picture of all; 1 where that is not known. It takes as long as a look at each splat. */
 double conic_lean_saving(const conic_source *source, const conic_camera *camera, const conic_render_options *render);
