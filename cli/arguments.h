@@ -72,6 +72,13 @@ int cli_parse(cli_session *session, const cli_option *options, int n_options, in
 int cli_parse_noting(cli_session *session, const cli_option *options, int n_options, int argc, char **argv,
                      const char **positional, int *n_positional, const char **values);
 
+/* For commands that read what a glTF may be. */
+#define CLI_OUTSIDE(session)                                                                                           \
+  {                                                                                                                    \
+    "allow-outside", CLI_FLAG, &(session)->allows_outside, NULL,                                                       \
+        "a glTF may name buffers and pictures outside of its folder", .acts.is_work = 1                                \
+  }
+
 /* For commands that read textures. */
 #define CLI_TEXTURE_BOUND(session)                                                                                     \
   {                                                                                                                    \

@@ -79,6 +79,7 @@ conic_status cli_kept_context(cli_kept *kept, const conic_context_options *optio
   now->isa = options->isa;
   now->large_pages = options->large_pages;
   now->max_texture_bytes = options->max_texture_bytes;
+  now->allows_outside = options->allows_outside;
   conic_parallel_limit(kept->context, options->threads);
   return CONIC_OK;
 }

@@ -320,6 +320,7 @@ int cli_session_open(cli_session *session) {
   options.threads = !session->threads && session->team ? session->team->threads : session->threads;
   options.large_pages = session->draws_many_frames;
   options.isa = session->isa;
+  options.allows_outside = session->allows_outside;
   if (session->max_texture_mib)
     options.max_texture_bytes = (size_t)session->max_texture_mib << 20;
   if (session->host)

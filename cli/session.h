@@ -23,6 +23,7 @@ typedef struct cli_session {
   int i_part, n_parts;
   double part_share;     /* of the part, what is done */
   int max_texture_mib;   /* --max-texture; 0: the library's bound. It is set before cli_session_open, as are those: */
+  int allows_outside;    /* --allow-outside */
   int draws_many_frames; /* of the same model; this and isa are set before cli_session_open */
   conic_isa isa;         /* --isa */
   const char

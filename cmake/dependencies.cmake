@@ -41,6 +41,32 @@ if(CONIC_WITH_ASSIMP AND NOT WIN32)
   find_package(assimp 5 CONFIG QUIET)
 endif()
 
+if(CONIC_WITH_DRACO AND NOT WIN32)
+  check_language(CXX)
+  if(CMAKE_CXX_COMPILER)
+    enable_language(CXX)
+    find_library(DRACO_LIBRARY draco)
+    find_path(DRACO_INCLUDE_FOLDER draco/compression/decode.h)
+    mark_as_advanced(DRACO_LIBRARY DRACO_INCLUDE_FOLDER)
+  endif()
+endif()
+if(CONIC_WITH_DRACO AND DRACO_LIBRARY AND DRACO_INCLUDE_FOLDER)
+  set(DRACO_FOUND TRUE)
+else()
+  set(DRACO_FOUND FALSE)
+endif()
+
+if(CONIC_WITH_MESHOPTIMIZER)
+  find_library(MESHOPTIMIZER_LIBRARY meshoptimizer)
+  find_path(MESHOPTIMIZER_INCLUDE_FOLDER meshoptimizer.h)
+  mark_as_advanced(MESHOPTIMIZER_LIBRARY MESHOPTIMIZER_INCLUDE_FOLDER)
+endif()
+if(CONIC_WITH_MESHOPTIMIZER AND MESHOPTIMIZER_LIBRARY AND MESHOPTIMIZER_INCLUDE_FOLDER)
+  set(MESHOPTIMIZER_FOUND TRUE)
+else()
+  set(MESHOPTIMIZER_FOUND FALSE)
+endif()
+
 if(CONIC_WITH_OPENCL)
   find_package(OpenCL QUIET)
 else()
@@ -104,6 +130,8 @@ set(found_png ${PNG_FOUND})
 set(found_zlib ${ZLIB_FOUND})
 set(found_openimageio ${OpenImageIO_FOUND})
 set(found_assimp ${assimp_FOUND})
+set(found_draco ${DRACO_FOUND})
+set(found_meshoptimizer ${MESHOPTIMIZER_FOUND})
 set(found_opencl ${OpenCL_FOUND})
 set(found_curl ${CURL_FOUND})
 set(found_zstd ${ZSTD_FOUND})
@@ -114,7 +142,8 @@ set(found_mpi ${MPI_C_FOUND})
 foreach(dependency "openexr:OpenEXR (EXR images)" "png:libpng (PNG images)"
         "zlib:zlib (compressed deep images, Gaussian scenes in .spz)"
         "openimageio:OpenImageIO (TIFF, JPEG … images, and PNG without libpng)"
-        "assimp:Assimp (glTF, 3MF, DAE, FBX … meshes)" "opencl:OpenCL (other devices)"
+        "assimp:Assimp (3MF, DAE, FBX … meshes)" "draco:libdraco (glTF packed by Draco)"
+        "meshoptimizer:libmeshoptimizer (glTF packed by meshopt)" "opencl:OpenCL (other devices)"
         "zstd:zstd (layered point clouds, Gaussian scenes in .spz)" "webp:libwebp (Gaussian scenes in .sog)" "xml:libxml2 (scans in .e57)" "brotli:libbrotlidec (points of Potree 2)" "curl:CURL (layered clouds from web servers)"
         "mpi:MPI (the program conic-mpi)")
   string(REGEX MATCH "^([a-z]+):(.*)$" matched ${dependency})

@@ -1,6 +1,7 @@
 #include "conic/version.h"
 
 #include "core/assimp/assimp_read.h"
+#include "core/gltf/draco.h"
 #include "core/pictures/openimageio_bridge.h"
 
 #define TEXT_OF(x) #x
@@ -37,6 +38,9 @@ const char *conic_version(void) {
 #ifndef CONIC_HAVE_WEBP
 #define CONIC_HAVE_WEBP 0
 #endif
+#ifndef CONIC_HAVE_MESHOPTIMIZER
+#define CONIC_HAVE_MESHOPTIMIZER 0
+#endif
 
 static const conic_feature features[] = {
     {"OpenEXR", CONIC_HAVE_OPENEXR},
@@ -50,14 +54,19 @@ static const conic_feature features[] = {
     {"libwebp", CONIC_HAVE_WEBP},
     {"Brotli", CONIC_HAVE_BROTLI},
     {"libxml2", CONIC_HAVE_XML},
+    {"Draco", 1},
+    {"meshoptimizer", CONIC_HAVE_MESHOPTIMIZER},
 };
 static const conic_feature without_openimageio = {"OpenImageIO", 0}, without_assimp = {"Assimp", 0};
-enum { I_OPENIMAGEIO = 1, I_ASSIMP = 6 };
+static const conic_feature without_draco = {"Draco", 0};
+enum { I_OPENIMAGEIO = 1, I_ASSIMP = 6, I_DRACO = 11 };
 
 const conic_feature *conic_feature_at(int i) {
   if (i == I_OPENIMAGEIO && !conic_bridge_is_there())
     return &without_openimageio;
   if (i == I_ASSIMP && !conic_assimp_is_there())
     return &without_assimp;
+  if (i == I_DRACO && !conic_draco_is_there())
+    return &without_draco;
   return i >= 0 && (size_t)i < sizeof features / sizeof features[0] ? &features[i] : NULL;
 }

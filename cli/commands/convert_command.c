@@ -288,6 +288,7 @@ static int run_convert(cli_session *session, int argc, char **argv) {
       {"measure", CLI_INT, &job.n_views, "N", "draw both scenes from N sides, and say how pictures differ", 1, 360},
       {"spz-version", CLI_INT, &job.write.spz_version, "V", "of .spz: 3 for readers of before 2026 [4]", 3, 4,
        .acts.with = "to=spz|o=.spz"},
+      CLI_OUTSIDE(session),
   };
   int exit_code = cli_parse(session, options, sizeof options / sizeof *options, argc, argv, positional, &n_positional);
   if (exit_code == CLI_DONE)

@@ -176,6 +176,7 @@ static int run_hybrid(cli_session *session, int argc, char **argv) {
        "blue (blue noise, ellipses) or box (three grids, circles: for comparison) [blue]", .choices = sampling_words},
       {"texture", CLI_TEXT, &job.texture, "FILE", "the picture on the mesh's surface [as its materials say]"},
       CLI_TEXTURE_BOUND(session),
+      CLI_OUTSIDE(session),
       {"smooth", CLI_FLAG, &job.is_smooth, NULL,
        "triangles look smooth everywhere: each vertex gets the mean normal of its faces", .acts.on = CLI_FACT(FACES)},
       {"crease", CLI_NUMBER, &job.crease_deg, "DEG",

@@ -26,12 +26,13 @@ static int parse(cli_session *session, int argc, char **argv, info_job *job) {
       {"check", CLI_FLAG, &job->is_check, NULL, "also look for what cannot be drawn"},
       {"cameras", CLI_FLAG, &job->is_cameras, NULL, "of a glTF, the cameras in it, as of files of cameras alone"},
       {"size", CLI_SIZE, job->size, "WxH", "of cameras: pixels [the file's]", 1, 65535},
+      CLI_OUTSIDE(session),
   };
   const char *positional[64] = {NULL};
   int n_positional = 0;
   if (argc > (int)(sizeof positional / sizeof *positional))
     return cli_usage("info: too many arguments");
-  int exit_code = cli_parse(session, options, 3, argc, argv, positional, &n_positional);
+  int exit_code = cli_parse(session, options, sizeof options / sizeof *options, argc, argv, positional, &n_positional);
   if (exit_code != CLI_DONE)
     return exit_code;
   if (n_positional != 1)

@@ -183,6 +183,7 @@ static int run_prepare(cli_session *session, int argc, char **argv) {
        "which points --count chooses; those of a smaller count are among those of a larger one [0]",
        .acts.with = "count"},
       CLI_COLUMNS(&job.base.columns),
+      CLI_OUTSIDE(session),
       CLI_WHERE(&job.base.where),
       {"plain", CLI_FLAG, &job.is_plain, NULL,
        "every point becomes an ellipse; else those that lie on no surface become round dots", .acts.on = CLI_FACT(RAW)},

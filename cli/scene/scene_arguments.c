@@ -200,6 +200,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "the picture on a mesh's surface [as its materials say]",
        .acts = {.on = CLI_FACT(FACES), .needs = CLI_FACT(TRIANGLES)}},
       CLI_TEXTURE_BOUND(session),
+      CLI_OUTSIDE(session),
       {"crease", CLI_PARSED, &raw, "DEG",
        "triangles without normals look smooth over edges up to this angle, 0 to 90 degrees; 0: every face is flat; "
        "all: any triangles look smooth everywhere, by the mean normal of the faces about each vertex [30]",

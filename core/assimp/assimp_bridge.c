@@ -2,7 +2,6 @@
 #include "core/assimp/assimp_bridge.h"
 
 #include <assimp/cimport.h>
-#include <assimp/commonMetaData.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <stdlib.h>
@@ -105,10 +104,6 @@ static void write_color(const sent_vertices *v, unsigned i, void *to) {
   ((float *)to)[2] = is_unset ? 1.0f : (float)color->b;
 }
 
-static void write_alpha(const sent_vertices *v, unsigned i, void *to) {
-  *(float *)to = (float)v->mesh->mColors[0][i].a;
-}
-
 static void send_triangles(conic_assimp_writer *w, const struct aiMesh *mesh, int is_mirrored) {
   const unsigned second = is_mirrored ? 2 : 1, third = is_mirrored ? 1 : 2;
   uint32_t block[BLOCK][3];
@@ -146,23 +141,17 @@ static void send_mesh(conic_assimp_writer *w, const struct aiMesh *mesh, const p
                                 .n_vertices = mesh->mNumVertices,
                                 .n_triangles = n_triangles,
                                 .i_material = w->request->keeps_faces ? conic_assimp_material(w, mesh) : UINT32_MAX};
-  int has_normals =
-      mesh->mNormals && strcmp(w->request->ending, "stl") != 0; /* an STL has the faces' own, which are seldom right */
-  int has_alphas = w->request->keeps_alpha && mesh->mColors[0] &&
-                   (strcmp(w->request->ending, "gltf") == 0 || strcmp(w->request->ending, "glb") == 0);
-  record.fields = (has_normals ? CONIC_ASSIMP_NORMALS : 0u) | (coordinates ? CONIC_ASSIMP_COORDINATES : 0u) |
-                  (mesh->mColors[0] ? CONIC_ASSIMP_COLORS : 0u) | (has_alphas ? CONIC_ASSIMP_ALPHAS : 0u);
+  record.fields = (mesh->mNormals ? CONIC_ASSIMP_NORMALS : 0u) | (coordinates ? CONIC_ASSIMP_COORDINATES : 0u) |
+                  (mesh->mColors[0] ? CONIC_ASSIMP_COLORS : 0u);
   conic_assimp_send_bytes(w, &record, sizeof record);
   const sent_vertices v = {w, mesh, place, coordinates};
   send_vertices(w, &v, write_position, 3 * sizeof(double));
-  if (has_normals)
+  if (mesh->mNormals)
     send_vertices(w, &v, write_normal, 3 * sizeof(float));
   if (coordinates)
     send_vertices(w, &v, write_coordinate, 2 * sizeof(float));
   if (mesh->mColors[0])
     send_vertices(w, &v, write_color, 3 * sizeof(float));
-  if (has_alphas)
-    send_vertices(w, &v, write_alpha, sizeof(float));
   send_triangles(w, mesh, place->is_mirrored);
 }
 
@@ -185,10 +174,8 @@ static int find_number(const struct aiMetadata *data, const char *key, int none)
 
 /* Which way is up in Assimp's scene: Assimp has turned DAE, 3DS and DXF by it already. */
 static void find_scene_up(const conic_assimp_writer *w, double up[3]) {
-  static const char *const z_up[] = {"stl", "3mf", "amf"};
+  static const char *const z_up[] = {"3mf", "amf"};
   int axis = 1;
-  if (strcmp(w->request->ending, "off") == 0)
-    return;
   for (size_t i = 0; i < sizeof z_up / sizeof z_up[0]; i++)
     if (strcmp(w->request->ending, z_up[i]) == 0)
       axis = 2;
@@ -240,16 +227,6 @@ static void hear(const char *message, char *cookie) {
     }
 }
 
-/* Assimp multiplies a node's translation and rotation of glTF 1 in the wrong order; the result does not tell. */
-static void warn_of_gltf_1(conic_assimp_writer *w) {
-  static const char note[] = "this is glTF 1, of which parts that are moved and turned may stand in wrong places";
-  const struct aiMetadata *data = w->scene->mMetaData;
-  for (unsigned i = 0; data && i < data->mNumProperties; i++)
-    if (strcmp(data->mKeys[i].data, AI_METADATA_SOURCE_FORMAT) == 0 && data->mValues[i].mType == AI_AISTRING &&
-        strcmp(((const struct aiString *)data->mValues[i].mData)->data, "glTF Importer") == 0)
-      conic_assimp_send(w, (conic_assimp_record){.type = CONIC_ASSIMP_NOTE}, note, sizeof note - 1);
-}
-
 static const struct aiScene *import(conic_assimp_writer *w) {
   struct aiFileIO io = conic_assimp_files(w);
   struct aiLogStream stream = {hear, (char *)w};
@@ -267,10 +244,9 @@ static void read_and_end(conic_assimp_request *request) {
   conic_assimp_writer w = {.request = request};
   w.scene = import(&w);
   const char *why = w.why_refused ? w.why_refused : aiGetErrorString();
-  if (w.scene && !w.why_refused) {
-    warn_of_gltf_1(&w);
+  if (w.scene && !w.why_refused)
     send_scene(&w);
-  } else
+  else
     conic_assimp_send_failure(&w,
                               strstr(why, "bad_alloc") ? "it takes more memory than a file of its size should" : why);
   _exit(0);

@@ -25,22 +25,18 @@ typedef enum conic_assimp_picture {
   CONIC_ASSIMP_TEXELS = 3, /* width × height × (r, g, b, a), from the top left */
 } conic_assimp_picture;
 
-enum { CONIC_ASSIMP_NORMALS = 1, CONIC_ASSIMP_COORDINATES = 2, CONIC_ASSIMP_COLORS = 4, CONIC_ASSIMP_ALPHAS = 8 };
-
-/* As conic_alpha_mode has them. */
-enum { CONIC_ASSIMP_BLEND = 0, CONIC_ASSIMP_MASK = 1, CONIC_ASSIMP_OPAQUE = 2 };
+enum { CONIC_ASSIMP_NORMALS = 1, CONIC_ASSIMP_COORDINATES = 2, CONIC_ASSIMP_COLORS = 4 };
 
 /* Fields that do not concern a record are zero. After a part come double position[n_vertices][3] in the world; then,
- * where there are such arrays, float normal[][3], coordinate[][2], color[][3] and alpha[]; then uint32_t
+ * where there are such arrays, float normal[][3], coordinate[][2] and color[][3]; then uint32_t
  * triangles[n_triangles][3]. */
 typedef struct conic_assimp_record {
   uint32_t type;
   uint32_t fields;     /* of a part: which arrays it has */
   uint32_t i_material; /* of a part: the number of the material's record */
   uint32_t picture, is_clamped, width, height;
-  float color[3], opacity, alpha_cutoff; /* of a material */
-  uint32_t alpha_mode;                   /* of a material */
-  double up[3];                          /* in the last record: zero where the file does not say */
+  float color[3], opacity; /* of a material */
+  double up[3];            /* in the last record: zero where the file does not say */
   uint64_t n_bytes, n_vertices, n_triangles;
 } conic_assimp_record;
 
@@ -52,7 +48,6 @@ typedef struct conic_assimp_request {
   size_t folder_length; /* other files are looked for in this folder, "…/" or "", and below it */
   const char *folder;
   int keeps_faces; /* materials and texture coordinates are kept */
-  int keeps_alpha; /* the alpha of glTF vertices is kept */
   int descriptor;  /* where the records go */
 } conic_assimp_request;
 

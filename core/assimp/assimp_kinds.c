@@ -26,12 +26,14 @@ static const content contents[] = {
 
 int conic_assimp_has_text(const void *bytes, size_t n, const char *text) {
   size_t length = strlen(text);
-  if (length == 0)
-    return 1;
-  for (const char *c = bytes; n >= length; c++, n--)
-    if (*c == *text && memcmp(c, text, length) == 0)
+  for (const char *c = bytes, *found; length > 0 && n >= length; n -= (size_t)(found + 1 - c), c = found + 1) {
+    found = memchr(c, text[0], n - length + 1);
+    if (!found)
+      return 0;
+    if (memcmp(found, text, length) == 0)
       return 1;
-  return 0;
+  }
+  return length == 0;
 }
 
 /* OFF, COFF, STNOFF … alone on the first line. */

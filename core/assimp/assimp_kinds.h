@@ -6,7 +6,7 @@
 
 /* Whether a kind is one of Assimp's. */
 static inline int conic_assimp_reads(conic_model_kind kind) {
-  return kind >= CONIC_MODEL_GLTF && kind <= CONIC_MODEL_AMF;
+  return kind >= CONIC_MODEL_3MF && kind <= CONIC_MODEL_AMF;
 }
 
 /* Tells the kind by the first `n` bytes of a file of `size` (UINT64_MAX: not known). The bytes must be certain, or be

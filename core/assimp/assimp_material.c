@@ -1,46 +1,13 @@
 #include "core/assimp/assimp_part.h"
 
 #include "conic/triangles.h"
-#include "core/base/context_struct.h"
 #include "core/files/file.h"
-#include "core/files/scratch.h"
 #include "core/image/image_common.h"
 #include "core/image/texture_levels.h"
 #include "core/pictures/image_samples.h"
+#include "core/pictures/texture_file.h"
 
 enum { LONGEST_PATH = 2 * CONIC_INPUT_LONGEST_WORD };
-
-/* Messages while a picture is read become warnings of the model, which can be drawn without it. */
-typedef struct picture_log {
-  conic_context *context;
-  const char *model, *path; /* the picture's path, which messages begin with, is replaced by: */
-  const char *name;
-} picture_log;
-
-static void warn_of_picture(void *cookie, conic_log_level level, const char *message) {
-  const picture_log *log = cookie;
-  size_t n = strlen(log->path);
-  (void)level;
-  if (strncmp(message, log->path, n) == 0 && strncmp(message + n, ": ", 2) == 0)
-    message += n + 2;
-  conic_log(log->context, CONIC_LOG_WARNING, "%s: the texture %s is left out: %s", log->model, log->name, message);
-}
-
-/* The picture in a file; null where it cannot be read. Errors: MEMORY, CANCELLED. */
-static conic_status read_texture_file(const conic_input *input, const char *path, const char *name,
-                                      conic_texture_wrap wrap, conic_texture **texture) {
-  conic_context *context = input->context, told = *context;
-  picture_log log = {context, input->name, path, name};
-  conic_image image;
-  told.options.log = warn_of_picture;
-  told.options.log_cookie = &log;
-  conic_status status = conic_texture_read_image(&told, path, &image);
-  if (status == CONIC_ERROR_MEMORY || status == CONIC_ERROR_CANCELLED)
-    return status;
-  if (status != CONIC_OK)
-    return CONIC_OK;
-  return conic_texture_take(context, &image, wrap, texture);
-}
 
 static conic_status take_path(const conic_input *input, conic_assimp_process *process, uint64_t n_bytes,
                               conic_texture_wrap wrap, conic_texture **texture) {
@@ -51,27 +18,9 @@ static conic_status take_path(const conic_input *input, conic_assimp_process *pr
   if (status != CONIC_OK)
     return status;
   if (conic_input_find(input, name, strlen(name), path, sizeof path))
-    return read_texture_file(input, path, path, wrap, texture);
+    return conic_texture_file_read(input->context, input->name, path, path, wrap, texture);
   conic_log(input->context, CONIC_LOG_WARNING, "%s: the texture %s is not there, and is left out", input->name, name);
   return CONIC_OK;
-}
-
-/* Pictures are read from files, but this one lies within another file. */
-static conic_status read_embedded(const conic_input *input, const void *bytes, size_t n_bytes, const char *name,
-                                  conic_texture_wrap wrap, conic_texture **texture) {
-  const char *folder = getenv("TMPDIR");
-  char beside[LONGEST_PATH], path[64];
-  conic_scratch scratch;
-  snprintf(beside, sizeof beside, "%s/texture", folder && *folder ? folder : "/tmp");
-  conic_status status = conic_scratch_open(input->context, beside, &scratch);
-  if (status != CONIC_OK)
-    return status;
-  snprintf(path, sizeof path, "/proc/self/fd/%d", scratch.descriptor);
-  status = conic_scratch_write(&scratch, 0, bytes, n_bytes);
-  if (status == CONIC_OK)
-    status = read_texture_file(input, path, name, wrap, texture);
-  conic_scratch_close(&scratch);
-  return status;
 }
 
 static conic_status make_from_texels(conic_context *context, const conic_assimp_record *record, const void *texels,
@@ -107,25 +56,23 @@ static conic_status take_embedded(const conic_input *input, conic_assimp_process
   conic_status status = conic_assimp_process_take(process, bytes, (size_t)record->n_bytes);
   if (status == CONIC_OK)
     status = is_texels ? make_from_texels(input->context, record, bytes, wrap, texture)
-                       : read_embedded(input, bytes, (size_t)record->n_bytes, name, wrap, texture);
+                       : conic_texture_bytes_read(input->context, input->name, bytes, (size_t)record->n_bytes, name,
+                                                  wrap, texture);
   conic_memory_release(input->context, bytes);
   return status;
 }
 
 conic_status conic_assimp_take_material(const conic_input *input, conic_assimp_process *process,
-                                        const conic_assimp_record *record, conic_assimp_part_builder *parts) {
+                                        const conic_assimp_record *record, conic_mesh_parts *parts) {
   conic_faces *faces = parts->faces;
   if (!faces || faces->n_made == CONIC_MAX_MATERIALS)
     return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: there are too many materials", input->name);
-  conic_material material = {.texture = NULL};
+  conic_material material = {.alpha_cutoff = 0.5f};
   for (int channel = 0; channel < 3; channel++) {
-    float value = conic_assimp_decode(parts, record->color[channel]);
+    float value = conic_assimp_decode(record->color[channel]);
     material.color[channel] = value >= 0.0f && value <= 1e6f ? value : 1.0f;
   }
-  float opacity = record->opacity, cutoff = record->alpha_cutoff;
-  material.transparency = opacity > 0.0f && opacity < 1.0f ? 1.0f - opacity : 0.0f;
-  material.alpha_cutoff = cutoff >= 0.0f && cutoff <= 1.0f ? cutoff : 0.5f;
-  material.alpha_mode = record->alpha_mode <= CONIC_ALPHA_OPAQUE ? record->alpha_mode : CONIC_ALPHA_BLEND;
+  material.transparency = record->opacity > 0.0f && record->opacity < 1.0f ? 1.0f - record->opacity : 0.0f;
   conic_status status = CONIC_OK;
   if (record->picture == CONIC_ASSIMP_PATH)
     status = take_path(input, process, record->n_bytes, record->is_clamped ? CONIC_WRAP_CLAMP : CONIC_WRAP_REPEAT,

@@ -1,4 +1,3 @@
-#include <assimp/GltfMaterial.h>
 #include <assimp/material.h>
 #include <stdlib.h>
 #include <string.h>
@@ -67,24 +66,17 @@ static int find_texture(const struct aiMaterial *material, struct aiString *path
 }
 
 /* Where a file says nothing, Assimp fills in white. */
-static int is_default(const conic_assimp_writer *w, const struct aiMaterial *material) {
+static int is_default(const struct aiMaterial *material) {
   struct aiString name = {0};
   aiGetMaterialString(material, AI_MATKEY_NAME, &name);
-  if (strcmp(w->request->ending, "stl") == 0)
-    return 0; /* in this format that name is the file's own colour */
-  return strcmp(name.data, AI_DEFAULT_MATERIAL_NAME) == 0 || strcmp(w->request->ending, "off") == 0;
+  return strcmp(name.data, AI_DEFAULT_MATERIAL_NAME) == 0;
 }
 
-static int is_gltf(const conic_assimp_writer *w) {
-  return strcmp(w->request->ending, "gltf") == 0 || strcmp(w->request->ending, "glb") == 0;
-}
-
-/* A texture replaces the colour; in glTF it is multiplied with it. */
-static void find_material_color(const conic_assimp_writer *w, const struct aiMaterial *material, int has_texture,
-                                float color[3]) {
+/* A texture replaces the colour. */
+static void find_material_color(const struct aiMaterial *material, int has_texture, float color[3]) {
   struct aiColor4D found = {1.0f, 1.0f, 1.0f, 1.0f};
   color[0] = color[1] = color[2] = 1.0f;
-  if (is_default(w, material) || (has_texture && !is_gltf(w)))
+  if (is_default(material) || has_texture)
     return;
   if (aiGetMaterialColor(material, AI_MATKEY_BASE_COLOR, &found) != aiReturn_SUCCESS &&
       aiGetMaterialColor(material, AI_MATKEY_COLOR_DIFFUSE, &found) != aiReturn_SUCCESS)
@@ -94,26 +86,12 @@ static void find_material_color(const conic_assimp_writer *w, const struct aiMat
   color[2] = (float)found.b;
 }
 
-/* glTF states the mode; in other formats alpha is taken as it is. A wholly invisible material is a mistake of the
- * file. */
-static void find_alpha_mode(const conic_assimp_writer *w, const struct aiMaterial *material,
-                            conic_assimp_record *record) {
-  struct aiString mode = {0};
-  ai_real opacity = 1, cutoff = (ai_real)0.5;
+/* A wholly invisible material is a mistake of the file. */
+static void find_opacity(const struct aiMaterial *material, conic_assimp_record *record) {
+  ai_real opacity = 1;
   record->opacity = 1.0f;
-  record->alpha_cutoff = 0.5f;
-  if (is_default(w, material))
-    return;
-  if (aiGetMaterialFloat(material, AI_MATKEY_OPACITY, &opacity) == aiReturn_SUCCESS)
+  if (!is_default(material) && aiGetMaterialFloat(material, AI_MATKEY_OPACITY, &opacity) == aiReturn_SUCCESS)
     record->opacity = (float)opacity;
-  if (!is_gltf(w))
-    return;
-  if (aiGetMaterialFloat(material, AI_MATKEY_GLTF_ALPHACUTOFF, &cutoff) == aiReturn_SUCCESS)
-    record->alpha_cutoff = (float)cutoff;
-  aiGetMaterialString(material, AI_MATKEY_GLTF_ALPHAMODE, &mode);
-  record->alpha_mode = strcmp(mode.data, "BLEND") == 0  ? CONIC_ASSIMP_BLEND
-                       : strcmp(mode.data, "MASK") == 0 ? CONIC_ASSIMP_MASK
-                                                        : CONIC_ASSIMP_OPAQUE;
 }
 
 static void send_material(conic_assimp_writer *w, const struct aiMaterial *material) {
@@ -121,8 +99,8 @@ static void send_material(conic_assimp_writer *w, const struct aiMaterial *mater
   struct aiString path;
   unsigned i_coordinate;
   int is_clamped = 0, has_texture = find_texture(material, &path, &i_coordinate, &is_clamped);
-  find_material_color(w, material, has_texture, record.color);
-  find_alpha_mode(w, material, &record);
+  find_material_color(material, has_texture, record.color);
+  find_opacity(material, &record);
   record.is_clamped = (uint32_t)is_clamped;
   if (!has_texture) {
     conic_assimp_send(w, record, NULL, 0);

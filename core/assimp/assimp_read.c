@@ -45,7 +45,7 @@ typedef struct whole_file {
 typedef struct assimp_reader {
   const conic_input *input;
   conic_assimp_process *process;
-  conic_assimp_part_builder parts;
+  conic_mesh_parts parts;
 } assimp_reader;
 
 /* A text from the process, without ends of lines or sentences. */
@@ -89,7 +89,7 @@ static conic_status take_end(assimp_reader *reader, const conic_assimp_record *r
     return conic_fail(reader->input->context, CONIC_ERROR_INPUT,
                       "%s: Assimp finds neither faces nor points in the file (lines are not drawn)",
                       reader->input->name);
-  return conic_assimp_parts_end(&reader->parts);
+  return conic_mesh_parts_end(&reader->parts);
 }
 
 static conic_status take_record(assimp_reader *reader, const conic_assimp_record *record) {
@@ -112,17 +112,17 @@ static conic_status take_record(assimp_reader *reader, const conic_assimp_record
   }
 }
 
-conic_status conic_assimp_read_records(const conic_input *input, conic_assimp_process *process, conic_model_kind kind,
+conic_status conic_assimp_read_records(const conic_input *input, conic_assimp_process *process,
                                        const conic_read_options *options, conic_model *model) {
   conic_assimp_record record = {.type = 0};
   assimp_reader reader = {.input = input, .process = process};
-  conic_status status = conic_assimp_parts_begin(input->context, input->name, kind, options, model, &reader.parts);
+  conic_status status = conic_mesh_parts_begin(input->context, input->name, options, model, &reader.parts);
   while (status == CONIC_OK && record.type != CONIC_ASSIMP_END) {
     status = conic_assimp_process_take(process, &record, sizeof record);
     if (status == CONIC_OK)
       status = take_record(&reader, &record);
   }
-  conic_assimp_parts_release(&reader.parts);
+  conic_mesh_parts_release(&reader.parts);
   return status;
 }
 
@@ -146,8 +146,7 @@ static conic_status start_process(const conic_input *input, const conic_assimp_b
                                   .n_bytes = file->n_bytes,
                                   .folder = input->name,
                                   .folder_length = (size_t)(name - input->name),
-                                  .keeps_faces = options->keeps_faces,
-                                  .keeps_alpha = options->keeps_alpha};
+                                  .keeps_faces = options->keeps_faces};
   warn_if_cut(input, kind, file);
   return conic_assimp_process_start(input->context, input->name, bridge, request, process);
 }
@@ -166,7 +165,7 @@ conic_status conic_assimp_read(conic_input *input, conic_model_kind kind, const 
     status = start_process(input, bridge, kind, options, &file, &process);
   conic_memory_release(input->context, file.bytes); /* the process has its own */
   if (status == CONIC_OK)
-    status = conic_assimp_read_records(input, &process, kind, options, model);
+    status = conic_assimp_read_records(input, &process, options, model);
   conic_assimp_process_end(&process);
   return status;
 }

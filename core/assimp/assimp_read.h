@@ -15,5 +15,5 @@ conic_status conic_assimp_read(conic_input *input, conic_model_kind kind, const 
                                conic_model *model);
 
 /* Reads the model from the output of a process that has read the file. Errors: INPUT, MEMORY, CANCELLED. */
-conic_status conic_assimp_read_records(const conic_input *input, conic_assimp_process *process, conic_model_kind kind,
+conic_status conic_assimp_read_records(const conic_input *input, conic_assimp_process *process,
                                        const conic_read_options *options, conic_model *model);

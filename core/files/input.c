@@ -304,8 +304,7 @@ size_t conic_input_beside(const conic_input *input, const char *file, size_t len
   return n > 0 && (size_t)n < room ? (size_t)n : 0;
 }
 
-/* A name as files spell it: of a URI, with %20 and the like; of Windows, with \. */
-static void make_plain(char *name) {
+void conic_input_make_plain(char *name) {
   char *to = name;
   if (strncmp(name, "file://", 7) == 0)
     memmove(name, name + 7, strlen(name) - 6);
@@ -328,7 +327,7 @@ int conic_input_find(const conic_input *input, const char *name, size_t length, 
   snprintf(plain, sizeof plain, "%.*s", (int)length, name);
   if (is_beside(input, plain, path, room))
     return 1;
-  make_plain(plain);
+  conic_input_make_plain(plain);
   const char *slash = strrchr(plain, '/');
   if (is_beside(input, plain, path, room) || (slash && is_beside(input, slash + 1, path, room)))
     return 1;

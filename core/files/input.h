@@ -89,6 +89,9 @@ conic_status conic_input_wrong(const conic_input *input, const char *format, ...
  * the room is too small. */
 size_t conic_input_beside(const conic_input *input, const char *file, size_t length, char *path, size_t room);
 
+/* Makes a name as files spell it, of a URI, with %20 and the like, or of Windows, with \, one as it is here. */
+void conic_input_make_plain(char *name);
+
 /* The path of a file that the file names: as it is written, else with %20 and \ read as a blank and /, else the last
  * part of it, since such paths are often another machine's. Returns 0 where there is none, after the first of these. */
 int conic_input_find(const conic_input *input, const char *name, size_t length, char *path, size_t room);

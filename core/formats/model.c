@@ -5,6 +5,7 @@
 #include "core/files/file.h"
 #include "core/formats/file_kinds.h"
 #include "core/formats/readers.h"
+#include "core/gltf/gltf_read.h"
 #include "core/splats/point_fields.h"
 
 CONIC_DEFINE_OPTIONS(conic_read_options, .cutoff = 1.5f)
@@ -113,9 +114,10 @@ conic_status conic_model_find_kind(conic_input *input, const char *path, conic_m
 /* Of all kinds but Assimp's. */
 static conic_status (*const readers[])(conic_input *, const conic_read_options *, const conic_delivery *,
                                        conic_model *) = {
-    [CONIC_MODEL_PLY] = conic_ply_read, [CONIC_MODEL_OBJ] = conic_obj_read, [CONIC_MODEL_XYZ] = conic_xyz_read,
-    [CONIC_MODEL_LAS] = conic_las_read, [CONIC_MODEL_PCD] = conic_pcd_read, [CONIC_MODEL_E57] = conic_e57_read,
-    [CONIC_MODEL_PTX] = conic_ptx_read, [CONIC_MODEL_STL] = conic_stl_read, [CONIC_MODEL_OFF] = conic_off_read};
+    [CONIC_MODEL_PLY] = conic_ply_read,   [CONIC_MODEL_OBJ] = conic_obj_read, [CONIC_MODEL_XYZ] = conic_xyz_read,
+    [CONIC_MODEL_LAS] = conic_las_read,   [CONIC_MODEL_PCD] = conic_pcd_read, [CONIC_MODEL_E57] = conic_e57_read,
+    [CONIC_MODEL_PTX] = conic_ptx_read,   [CONIC_MODEL_STL] = conic_stl_read, [CONIC_MODEL_OFF] = conic_off_read,
+    [CONIC_MODEL_GLTF] = conic_gltf_read, [CONIC_MODEL_GLB] = conic_gltf_read};
 
 conic_status conic_model_read_kind(conic_input *input, conic_model_kind kind, const conic_read_options *options,
                                    const conic_delivery *delivery, conic_model *model) {

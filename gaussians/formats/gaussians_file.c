@@ -1,5 +1,6 @@
 /* Gaussian scenes by whatever format: which a file is, and its reader and writer. */
 
+#include "core/assimp/assimp_kinds.h"
 #include "core/base/loan_find.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
@@ -112,35 +113,21 @@ int conic_find_left_out(double q[4], double (*rounded)(double value)) {
 
 /* --- which format a file is --- */
 
-static int has_text(const unsigned char *bytes, size_t n, const char *text) {
-  size_t length = strlen(text);
-  while (n >= length) {
-    const unsigned char *found = memchr(bytes, text[0], n - length + 1);
-    if (!found)
-      return 0;
-    if (memcmp(found, text, length) == 0)
-      return 1;
-    n -= (size_t)(found + 1 - bytes);
-    bytes = found + 1;
-  }
-  return 0;
-}
-
 static int begins_as_ply(const unsigned char *bytes, size_t n) {
   return n >= 4 && memcmp(bytes, "ply", 3) == 0 && (bytes[3] == '\n' || bytes[3] == '\r' || bytes[3] == ' ');
 }
 
 static int is_compressed_ply(const unsigned char *bytes, size_t n) {
   size_t n_head = n < 65536 ? n : 65536;
-  return begins_as_ply(bytes, n) && has_text(bytes, n_head, " packed_position") &&
-         has_text(bytes, n_head, "element chunk");
+  return begins_as_ply(bytes, n) && conic_assimp_has_text(bytes, n_head, " packed_position") &&
+         conic_assimp_has_text(bytes, n_head, "element chunk");
 }
 
 static int is_gaussian_ply(const unsigned char *bytes, size_t n) {
   static const char *const names[] = {" scale_0", " scale_1", " rot_0", " rot_3", " f_dc_2", " opacity"};
   size_t n_head = n < 65536 ? n : 65536;
   for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-    if (!has_text(bytes, n_head, names[i]))
+    if (!conic_assimp_has_text(bytes, n_head, names[i]))
       return 0;
   return 1;
 }
@@ -154,7 +141,8 @@ static int is_packed_spz(const unsigned char *bytes, size_t n) {
 
 static int is_sog_archive(const unsigned char *bytes, size_t n) {
   size_t tail = n > 65536 ? n - 65536 : 0;
-  return has_text(bytes + tail, n - tail, "meta.json") && has_text(bytes + tail, n - tail, "means_l.webp");
+  return conic_assimp_has_text(bytes + tail, n - tail, "meta.json") &&
+         conic_assimp_has_text(bytes + tail, n - tail, "means_l.webp");
 }
 
 /* The JSON of a glTF, whichever way it is wrapped. */
@@ -165,7 +153,7 @@ static int names_gaussians(const unsigned char *bytes, size_t n) {
     length = conic_load_32(bytes + 12);
     length = length < n - 20 ? length : n - 20;
   }
-  return has_text(bytes + from, length, "KHR_gaussian_splatting");
+  return conic_assimp_has_text(bytes + from, length, "gaussian_splat");
 }
 
 /* Of a file that is no PLY. */
@@ -184,7 +172,7 @@ static int find_scene_kind(const char *path, const unsigned char *bytes, size_t 
     *kind = CONIC_GAUSSIANS_GLB;
   else if (is_json && names_gaussians(bytes, n))
     *kind = CONIC_GAUSSIANS_GLTF;
-  else if (is_json && has_text(bytes, n, "\"means\"") && has_text(bytes, n, "\"sh0\""))
+  else if (is_json && conic_assimp_has_text(bytes, n, "\"means\"") && conic_assimp_has_text(bytes, n, "\"sh0\""))
     *kind = CONIC_GAUSSIANS_SOG;
   else if (path && conic_file_has_ending(path, "splat"))
     *kind = CONIC_GAUSSIANS_SPLAT;

@@ -59,6 +59,9 @@ typedef struct conic_context_options {
   /* The textures of files together take no more memory than this. A call that would read one more fails with INPUT
    * before it is decoded. 0: no limit. */
   size_t max_texture_bytes;
+
+  /* Not 0: a glTF may name buffers and pictures that do not lie in its folder or below it. */
+  int allows_outside;
 } conic_context_options;
 
 /* malloc and free, no messages, no progress, all threads, no limit but 4 GiB of textures, the widest instructions. */

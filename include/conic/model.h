@@ -21,10 +21,10 @@ typedef enum conic_model_kind {
   CONIC_MODEL_PTX = 6,
   CONIC_MODEL_STL = 16,
   CONIC_MODEL_OFF = 17,
-
-  /* Assimp's, where Assimp is there */
   CONIC_MODEL_GLTF = 18,
   CONIC_MODEL_GLB = 19, /* binary glTF */
+
+  /* Assimp's, where Assimp is there */
   CONIC_MODEL_3MF = 20,
   CONIC_MODEL_DAE = 21, /* COLLADA */
   CONIC_MODEL_FBX = 22,

@@ -70,6 +70,7 @@ def render(
     up: Optional[Union[str, float, Sequence[float]]] = None,
     texture: Optional[PathLike] = None,
     max_texture: Optional[int] = None,
+    allow_outside: Optional[bool] = None,
     crease: Optional[Union[str, float, Sequence[float]]] = None,
     color_by: Optional[PathLike] = None,
     ramp: Optional[Union[str, float, Sequence[float]]] = None,
@@ -189,6 +190,7 @@ def render(
         [auto]
     texture: the picture on a mesh's surface [as its materials say]
     max_texture: what textures may take in memory together; one more is refused before it is decoded [4096]
+    allow_outside: a glTF may name buffers and pictures outside of its folder
     crease: triangles without normals look smooth over edges up to this angle, 0 to 90 degrees; 0: every face is
         flat; all: any triangles look smooth everywhere, by the mean normal of the faces about each vertex [30]
     color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value
@@ -286,6 +288,7 @@ def verify(
     as_: Optional[Literal["auto", "points", "mesh", "hybrid"]] = None,
     texture: Optional[PathLike] = None,
     max_texture: Optional[int] = None,
+    allow_outside: Optional[bool] = None,
     crease: Optional[Union[str, float, Sequence[float]]] = None,
     color_by: Optional[PathLike] = None,
     ramp: Optional[Union[str, float, Sequence[float]]] = None,
@@ -362,6 +365,7 @@ def verify(
         [auto]
     texture: the picture on a mesh's surface [as its materials say]
     max_texture: what textures may take in memory together; one more is refused before it is decoded [4096]
+    allow_outside: a glTF may name buffers and pictures outside of its folder
     crease: triangles without normals look smooth over edges up to this angle, 0 to 90 degrees; 0: every face is
         flat; all: any triangles look smooth everywhere, by the mean normal of the faces about each vertex [30]
     color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value
@@ -467,6 +471,7 @@ def judge(
     as_: Optional[Literal["auto", "points", "mesh", "hybrid"]] = None,
     texture: Optional[PathLike] = None,
     max_texture: Optional[int] = None,
+    allow_outside: Optional[bool] = None,
     crease: Optional[Union[str, float, Sequence[float]]] = None,
     color_by: Optional[PathLike] = None,
     ramp: Optional[Union[str, float, Sequence[float]]] = None,
@@ -550,6 +555,7 @@ def judge(
         [auto]
     texture: the picture on a mesh's surface [as its materials say]
     max_texture: what textures may take in memory together; one more is refused before it is decoded [4096]
+    allow_outside: a glTF may name buffers and pictures outside of its folder
     crease: triangles without normals look smooth over edges up to this angle, 0 to 90 degrees; 0: every face is
         flat; all: any triangles look smooth everywhere, by the mean normal of the faces about each vertex [30]
     color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value
@@ -646,6 +652,7 @@ def explain(
     as_: Optional[Literal["auto", "points", "mesh", "hybrid"]] = None,
     texture: Optional[PathLike] = None,
     max_texture: Optional[int] = None,
+    allow_outside: Optional[bool] = None,
     crease: Optional[Union[str, float, Sequence[float]]] = None,
     color_by: Optional[PathLike] = None,
     ramp: Optional[Union[str, float, Sequence[float]]] = None,
@@ -718,6 +725,7 @@ def explain(
         [auto]
     texture: the picture on a mesh's surface [as its materials say]
     max_texture: what textures may take in memory together; one more is refused before it is decoded [4096]
+    allow_outside: a glTF may name buffers and pictures outside of its folder
     crease: triangles without normals look smooth over edges up to this angle, 0 to 90 degrees; 0: every face is
         flat; all: any triangles look smooth everywhere, by the mean normal of the faces about each vertex [30]
     color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value
@@ -830,6 +838,7 @@ def info(
     check: Optional[bool] = False,
     cameras: Optional[bool] = None,
     size: Optional[Union[str, Sequence[int]]] = None,
+    allow_outside: Optional[bool] = None,
     threads: Optional[int] = None,
 ) -> Dict[str, Any]:
     """What a file holds; with `check`, also what of it cannot be drawn.
@@ -839,6 +848,7 @@ def info(
     check: also look for what cannot be drawn
     cameras: of a glTF, the cameras in it, as of files of cameras alone
     size: of cameras: pixels [the file's]
+    allow_outside: a glTF may name buffers and pictures outside of its folder
     threads: how many threads compute; the results never depend on it [0: all]
     """
 
@@ -920,6 +930,7 @@ def prepare(
     count: Optional[Union[int, str]] = None,
     seed: Optional[Union[int, str]] = None,
     columns: Optional[Union[str, float, Sequence[float]]] = None,
+    allow_outside: Optional[bool] = None,
     where: Optional[PathLike] = None,
     plain: Optional[bool] = None,
     bake: Optional[Union[str, float, Sequence[float]]] = None,
@@ -941,6 +952,7 @@ def prepare(
     count: keep N of the points, chosen at random, and fit the sizes to them
     seed: which points --count chooses; those of a smaller count are among those of a larger one [0]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
+    allow_outside: a glTF may name buffers and pictures outside of its folder
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
     plain: every point becomes an ellipse; else those that lie on no surface become round dots
@@ -966,6 +978,7 @@ def octree(
     cutoff: Optional[float] = None,
     k: Optional[int] = None,
     columns: Optional[Union[str, float, Sequence[float]]] = None,
+    allow_outside: Optional[bool] = None,
     where: Optional[PathLike] = None,
     color_by: Optional[PathLike] = None,
     ramp: Optional[Union[str, float, Sequence[float]]] = None,
@@ -980,6 +993,7 @@ def octree(
     cutoff: the --cutoff of the pictures to come [1.5]
     k: neighbours that a raw point's size is estimated from, 6 to 64 [20]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
+    allow_outside: a glTF may name buffers and pictures outside of its folder
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
     color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value
@@ -1068,6 +1082,7 @@ def mls(
     memory: Optional[Union[int, str]] = None,
     isa: Optional[Literal["auto", "scalar", "sse2", "avx2", "avx512", "neon"]] = None,
     columns: Optional[Union[str, float, Sequence[float]]] = None,
+    allow_outside: Optional[bool] = None,
 ) -> Scene:
     """Cleans ("project"), thins ("thin") or densifies ("densify") points by the surface that they mean.
 
@@ -1093,6 +1108,7 @@ def mls(
     memory: project: work cell by cell in so much memory, the rest beside the output
     isa: auto, scalar, sse2, avx2, avx512, neon; changes no bit [auto]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
+    allow_outside: a glTF may name buffers and pictures outside of its folder
     threads: how many threads compute; the results never depend on it [0: all]
     """
 
@@ -1140,6 +1156,7 @@ def hybrid(
     sampling: Optional[Literal["blue", "box"]] = None,
     texture: Optional[PathLike] = None,
     max_texture: Optional[int] = None,
+    allow_outside: Optional[bool] = None,
     smooth: Optional[bool] = None,
     crease: Optional[float] = None,
     cutoff: Optional[float] = None,
@@ -1165,6 +1182,7 @@ def hybrid(
     sampling: blue (blue noise, ellipses) or box (three grids, circles: for comparison) [blue]
     texture: the picture on the mesh's surface [as its materials say]
     max_texture: what textures may take in memory together; one more is refused before it is decoded [4096]
+    allow_outside: a glTF may name buffers and pictures outside of its folder
     smooth: triangles look smooth everywhere: each vertex gets the mean normal of its faces
     crease: triangles without normals look smooth over edges up to this angle, in degrees; 0: every face is flat
         [30]
@@ -1195,6 +1213,7 @@ def convert(
     sh_bits: Optional[int] = None,
     measure: Optional[int] = None,
     spz_version: Optional[int] = None,
+    allow_outside: Optional[bool] = None,
 ) -> Scene:
     """Writes a Gaussian scene in another format, which the output's ending says.
 
@@ -1209,6 +1228,7 @@ def convert(
     sh_bits: of .spz: bits of each number of the harmonics, 1 to 8 [8]
     measure: draw both scenes from N sides, and say how pictures differ
     spz_version: of .spz: 3 for readers of before 2026 [4]
+    allow_outside: a glTF may name buffers and pictures outside of its folder
     threads: how many threads compute; the results never depend on it [0: all]
     """
 
@@ -1236,6 +1256,7 @@ def gradient(
     as_: Optional[Literal["auto", "points", "mesh", "hybrid"]] = None,
     texture: Optional[PathLike] = None,
     max_texture: Optional[int] = None,
+    allow_outside: Optional[bool] = None,
     crease: Optional[Union[str, float, Sequence[float]]] = None,
     color_by: Optional[PathLike] = None,
     ramp: Optional[Union[str, float, Sequence[float]]] = None,
@@ -1301,6 +1322,7 @@ def gradient(
         [auto]
     texture: the picture on a mesh's surface [as its materials say]
     max_texture: what textures may take in memory together; one more is refused before it is decoded [4096]
+    allow_outside: a glTF may name buffers and pictures outside of its folder
     crease: triangles without normals look smooth over edges up to this angle, 0 to 90 degrees; 0: every face is
         flat; all: any triangles look smooth everywhere, by the mean normal of the faces about each vertex [30]
     color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value

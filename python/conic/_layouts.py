@@ -204,6 +204,7 @@ class ContextOptions(ctypes.Structure):
         ("max_allocation_bytes", c_size_t),
         ("isa", c_int),
         ("max_texture_bytes", c_size_t),
+        ("allows_outside", c_int),
     ]
 
 

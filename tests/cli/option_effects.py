@@ -63,6 +63,7 @@ CASES = {
     "--as": [["--as", word] for word in ("points", "mesh", "hybrid")],
     "--texture": [["--texture", "texture.png"]],
     "--max-texture": [["--max-texture", "1"]],
+    "--allow-outside": [["--allow-outside"]],
     "--crease": [["--crease", "0"], ["--crease", "90"], ["--crease", "all"]],
     "--color-by": [["--color-by", word] for word in ("height", "intensity", "nonsense", "normal")],
     "--ramp": [["--ramp", "heat"], ["--ramp", "0,1"], ["--ramp", "grey:0,1"]],

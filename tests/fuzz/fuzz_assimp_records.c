@@ -13,7 +13,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n_bytes) {
   conic_read_options_init(&options);
   options.keeps_faces = 1;
   FUZZ_CHECK(lseek(input.descriptor, 0, SEEK_SET) == 0);
-  conic_status status = conic_assimp_read_records(&named, &process, CONIC_MODEL_FBX, &options, &model);
+  conic_status status = conic_assimp_read_records(&named, &process, &options, &model);
   for (size_t i = 0; i < model.n_triangles; i++)
     for (int corner = 0; corner < 3; corner++)
       FUZZ_CHECK(model.triangles[i][corner] < model.points.count);

@@ -157,6 +157,7 @@ int main(int argc, char **argv) {
   conic_context *context = files_context();
   seed_set *set = seeds_make(context);
   seeds_all_assimp(set);
+  seeds_all_gltf(set);
   seeds_all_records(set);
   seeds_all_hierarchies(set);
   seeds_all_references(set);

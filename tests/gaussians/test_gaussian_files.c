@@ -3,6 +3,7 @@
 #include "core/base/gaussian.h"
 #include "gaussians/scene/activation.h"
 #include "tests/support/gaussian_fixture.h"
+#include "tests/support/mesh_file.h"
 
 static conic_gaussians read_again(conic_context *context, const char *path, int keeps_source) {
   conic_gaussians scene;
@@ -166,6 +167,85 @@ static void test_gltf(conic_context *context) {
   CHECK(unlink(path) == 0);
 }
 
+/* A node that stretches its Gaussians is refused; what is not known of them is told. */
+static void test_gltf_told(conic_context *context) {
+  static const char format[] =
+      "{\"nodes\":[{\"mesh\":0,\"scale\":[%s]}],\"meshes\":[{\"primitives\":[{\"mode\":0,\"attributes\":{\"POSITION\":"
+      "0,"
+      "\"COLOR_0\":1,\"_ROTATION\":1,\"_SCALE\":0},\"extensions\":{\"KHR_gaussian_splatting\":{\"%s\":\"%s\"}}}]}],"
+      "\"accessors\":[{\"componentType\":5126,\"count\":1,\"type\":\"VEC3\"},{\"componentType\":5126,\"count\":1,"
+      "\"type\":\"VEC4\"}]}";
+  static const char *const cases[][4] = {{"1,1,1", "kernel", "ellipse", NULL},
+                                         {"1,1,1", "kernel", "box", "the kernel box"},
+                                         {"1,1,1", "projection", "tangential", "the projection tangential"},
+                                         {"1,1,1", "sortingMethod", "none", "the sorting method none"},
+                                         {"1,1,1", "colorSpace", "lin_rec709_display", NULL},
+                                         {"1,1,1", "colorSpace", "acescg", "the colour space acescg"},
+                                         {"1,2,1", "kernel", "ellipse", NULL}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    conic_gaussians scene;
+    char text[sizeof format + 64];
+    snprintf(text, sizeof text, format, cases[i][0], cases[i][1], cases[i][2]);
+    const char *path = files_write("a.gltf", text);
+    files_warning[0] = 0;
+    conic_status status = conic_gaussians_read(context, path, NULL, &scene);
+    if (cases[i][0][2] == '2')
+      files_check_failed("stretched", status, "a.gltf", "stretches", NULL);
+    else
+      CHECK(status == CONIC_OK && scene.count == 1);
+    CHECK(cases[i][3] ? strstr(files_warning, cases[i][3]) != NULL : files_warning[0] == 0);
+    conic_gaussians_release(context, &scene);
+    CHECK(unlink(path) == 0);
+  }
+}
+
+/* An .spz within a glTF is what it is alone, where the node puts it. */
+static void test_gltf_packed(conic_context *context) {
+  static const char *const extensions[] = {
+      "\"KHR_gaussian_splatting\":{\"extensions\":{\"KHR_gaussian_splatting_compression_spz\":{\"bufferView\":0}}}",
+      "\"KHR_gaussian_splatting\":{\"extensions\":{\"KHR_gaussian_splatting_compression_spz_2\":{\"bufferView\":0}}}",
+      "\"KHR_spz_gaussian_splats_compression\":{\"bufferView\":0}"};
+  static mesh_file file;
+  conic_gaussians scene = gaussians_random(context, 5, 1, 0), alone, packed;
+  conic_gaussians_write_options options;
+  unsigned char *bytes;
+  conic_gaussians_write_options_init(&options);
+  options.kind = CONIC_GAUSSIANS_SPZ;
+  if (!gaussians_have(CONIC_GAUSSIANS_SPZ)) {
+    conic_gaussians_release(context, &scene);
+    return;
+  }
+  const char *path = files_path("a.spz");
+  CHECK_OK(conic_gaussians_write(context, path, &scene, &options));
+  CHECK_OK(conic_gaussians_read(context, path, NULL, &alone));
+  size_t n = files_read(path, &bytes);
+  CHECK(unlink(path) == 0);
+  for (size_t i = 0; i < sizeof extensions / sizeof *extensions; i++) {
+    file.n = 0;
+    mesh_text(
+        &file,
+        "{\"nodes\":[{\"mesh\":0,\"translation\":[1,0,0]}],\"meshes\":[{\"primitives\":[{\"mode\":0,"
+        "\"attributes\":{},\"extensions\":{%s}}]}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":%zu}],\"buffers\":"
+        "[{\"byteLength\":%zu,\"uri\":\"data:;base64,",
+        extensions[i], n, n);
+    mesh_base64(&file, bytes, n);
+    mesh_text(&file, "\"}]}");
+    path = files_write_bytes("a.gltf", file.bytes, file.n);
+    CHECK_OK(conic_gaussians_read(context, path, NULL, &packed));
+    CHECK(packed.count == 5 && packed.sh_degree == 1 && strcmp(packed.frame, "luf") == 0);
+    for (size_t k = 0; k < 5 && packed.count == 5; k++) {
+      CHECK_NEAR((double)packed.position[0][k], (double)alone.position[0][k] + 1.0, 1e-6);
+      CHECK(packed.scale[1][k] == alone.scale[1][k] && packed.opacity[k] == alone.opacity[k]);
+      CHECK(packed.rotation[2][k] == alone.rotation[2][k] && packed.sh[12 * k + 7] == alone.sh[12 * k + 7]);
+    }
+    conic_gaussians_release(context, &packed);
+    CHECK(unlink(path) == 0);
+  }
+  free(bytes);
+  conic_gaussians_release(context, &alone);
+  conic_gaussians_release(context, &scene);
+}
+
 /* What each format may lose of gaussians_random's: half a step of its numbers. */
 typedef struct format_bounds {
   double position, scale, rotation_deg, opacity, color, harmonics;
@@ -273,6 +353,8 @@ int main(void) {
   test_spz(context);
   test_compressed(context);
   test_gltf(context);
+  test_gltf_told(context);
+  test_gltf_packed(context);
   test_round_trips(context);
   test_odd_numbers(context);
   files_end(context);

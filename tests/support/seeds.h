@@ -6,6 +6,7 @@
 #include "tests/support/e57_example.h"
 #include "tests/support/files.h"
 #include "tests/support/gaussian_fixture.h"
+#include "tests/support/gltf_packed.h"
 #include "tests/support/hierarchy_parts.h"
 #include "tests/support/las_file.h"
 #include "tests/support/laz_examples.h"
@@ -450,6 +451,28 @@ static inline void seeds_all_assimp(seed_set *set) {
     mesh_kinds[i].make(&file);
     seeds_add(set, "assimp", mesh_kinds[i].ending, mesh_kinds[i].is_text, file.bytes, file.n);
   }
+}
+
+/* Some of everything that glTF has, and what is packed in it. */
+static inline void seeds_all_gltf(seed_set *set) {
+  static mesh_file made;
+  static gltf_file file;
+  const char *rest;
+  gltf_make_rich(&made, GLTF_EMBEDDED);
+  seeds_add(set, "gltf", "gltf", 0, made.bytes, made.n);
+  gltf_make_rich(&made, GLTF_GLB);
+  seeds_add(set, "gltf", "glb", 0, made.bytes, made.n);
+  rest = gltf_draco(&file, 0, 4);
+  gltf_make(&made, &file, GLTF_GLB, rest);
+  seeds_add(set, "gltf", "glb", 0, made.bytes, made.n);
+  for (int i = 0; i < 2; i++) {
+    rest = gltf_meshopt(&file, i ? "INDICES" : "TRIANGLES", 0, 4);
+    gltf_make(&made, &file, GLTF_GLB, rest);
+    seeds_add(set, "gltf", "glb", 0, made.bytes, made.n);
+  }
+  made.n = 0;
+  mesh_glb(&made);
+  seeds_add(set, "gltf", "glb", 0, made.bytes, made.n);
 }
 
 /* A material with texels, one with a path, and a part of three vertices with everything. */

@@ -35,7 +35,7 @@ static conic_status read_records(conic_model *model) {
   conic_read_options options;
   conic_read_options_init(&options);
   options.keeps_faces = 1;
-  conic_status status = conic_assimp_read_records(&input, &process, CONIC_MODEL_FBX, &options, model);
+  conic_status status = conic_assimp_read_records(&input, &process, &options, model);
   conic_assimp_process_end(&process);
   CHECK(unlink(path) == 0);
   records.n = 0;
