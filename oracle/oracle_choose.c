@@ -34,7 +34,9 @@ oracle_view conic_oracle_view(const conic_camera *camera, const conic_render_opt
   oracle_view view = {*camera, near_z, options->kernel};
   view.floats = conic_oracle_floats(floats);
   view.cutoff = (double)options->kernel.cutoff;
-  double limit = oracle_min(view.cutoff, conic_oracle_kernel_facts(&options->kernel).end);
+  const oracle_kernel_facts facts = conic_oracle_kernel_facts(&options->kernel);
+  const int is_profiled = !facts.is_gaussian && options->prefilter > 0.0f;
+  double limit = oracle_min(view.cutoff, facts.end);
   view.support = limit * limit;
   view.prefilter = (double)options->prefilter;
   view.steepness = steepness_of(&options->kernel);
@@ -42,7 +44,7 @@ oracle_view conic_oracle_view(const conic_camera *camera, const conic_render_opt
   view.method = (int)options->method;
   view.thin_px = 0.5;
   if (options->method == CONIC_METHOD_AUTO)
-    view.thin_px = 0.125 * sqrt(oracle_max(view.prefilter, 1.0));
+    view.thin_px = (is_profiled ? 1.0 / 256.0 : 0.125) * sqrt(oracle_max(view.prefilter, 1.0));
   view.cull_back = options->cull_back;
   view.profile = NULL;
   return view;

@@ -35,13 +35,18 @@ static const char *what_of_camera_is_wrong(const conic_splats *splats, const con
   return NULL;
 }
 
-/* Half a pixel a standard deviation; for `auto`, whose other formula follows thin splats further, an eighth
- * (docs/reference/picture.md, Auto). */
+static int has_profile(const conic_render_options *options) {
+  return !(conic_kernel_traits(&options->kernel) & CONIC_IS_GAUSSIAN) && options->prefilter > 0.0f &&
+         !conic_method_is_dot(options->method);
+}
+
+/* Half a pixel a standard deviation; for `auto`, whose other formulas follow thin splats further, an eighth, and of
+ * kernels that have a profile, which conic puts off by more, a 256th (docs/reference/picture.md, Auto). */
 static float thin_variance(const conic_render_options *options) {
   float h = options->prefilter;
   if (options->method != CONIC_METHOD_AUTO)
     return 0.25f;
-  return (h > 1.0f ? h : 1.0f) / 64.0f;
+  return (h > 1.0f ? h : 1.0f) / (has_profile(options) ? 65536.0f : 64.0f);
 }
 
 /* The eye, and from where on float tells which side of it a plane is on (raster/loops/project_body.h). */
@@ -112,8 +117,5 @@ conic_status conic_view_init(conic_context *context, const conic_splats *splats,
     view->epsilon_cap = 4.0f * CONIC_EPSILON_C * view->cutoff * (float)splat_length;
   }
   view->needs_nearness = view->needs_slope = 1;
-  if ((conic_kernel_traits(&view->kernel) & CONIC_IS_GAUSSIAN) || !(view->prefilter > 0.0f) ||
-      conic_method_is_dot(view->method))
-    return CONIC_OK;
-  return conic_profile_make(context, &view->kernel, &view->profile);
+  return has_profile(options) ? conic_profile_make(context, &view->kernel, &view->profile) : CONIC_OK;
 }
