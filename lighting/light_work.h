@@ -51,6 +51,9 @@ static inline float conic_sky_rest_at(const conic_sky_rest *rest, size_t c, cons
   return sum;
 }
 
+/* The sky's colour in a direction, which is a unit vector: linear between the centres of its pixels. */
+void conic_sky_look(const conic_sky *sky, const float direction[3], float color[3]);
+
 typedef struct conic_light_work {
   conic_context *context;
   const conic_camera *camera;

@@ -185,6 +185,28 @@ static conic_status gather_sky(conic_light_work *l) {
   return CONIC_OK;
 }
 
+/* --- what surfaces mirror --- */
+
+static void mirror_row(void *data, size_t y, int i_thread) {
+  const conic_light_work *l = data;
+  const float part = (float)l->options->reflectance;
+  (void)i_thread;
+  for (size_t x = 0; x < (size_t)l->image->width; x++) {
+    size_t pixel = conic_light_pixel(l, x, y);
+    const float *n = (const float *)l->image->planes[CONIC_PLANE_NORMAL] + 3 * pixel;
+    float *rgba = (float *)l->image->planes[CONIC_PLANE_RGBA] + 4 * pixel, towards[3], mirrored[3], color[3];
+    if (!(((const float *)l->image->planes[CONIC_PLANE_Z])[pixel] > 0.0f))
+      continue;
+    conic_pixel_viewer(&l->spread.rays, x, y, towards);
+    float twice = 2.0f * ((n[0] * towards[0] + n[1] * towards[1]) + n[2] * towards[2]);
+    for (int c = 0; c < 3; c++)
+      mirrored[c] = twice * n[c] - towards[c];
+    conic_sky_look(l->options->sky, mirrored, color);
+    for (int c = 0; c < 3; c++)
+      rgba[c] += part * (conic_light_coverage(l, pixel) * l->finish.exposure * color[c] - rgba[c]);
+  }
+}
+
 /* --- all of it --- */
 
 static void finish_colors(conic_light_work *l) {
@@ -257,6 +279,8 @@ conic_status conic_image_light_shared(conic_context *context, const conic_caster
     finish_colors(&l);
   if (status == CONIC_OK && own.n_lamps > 0)
     status = conic_light_add_lamps(&l);
+  if (status == CONIC_OK && l.hidden && own.sky && own.reflectance > 0.0)
+    conic_parallel_for(context, (size_t)image->height, mirror_row, &l);
   if (status == CONIC_OK)
     divide_shadow(&l);
   conic_memory_release_these(context, l.lamp_power, l.hidden, l.sums_block);

@@ -262,3 +262,25 @@ void conic_sky_rest_without(const conic_sky *sky, uint64_t i_direction, conic_sk
     }
   }
 }
+
+void conic_sky_look(const conic_sky *sky, const float direction[3], float color[3]) {
+  double seen[3];
+  for (int i = 0; i < 3; i++)
+    seen[i] = ((double)direction[0] * sky->rows[i][0] + (double)direction[1] * sky->rows[i][1]) +
+              (double)direction[2] * sky->rows[i][2];
+  double x = (conic_angle(seen[0], seen[2]) / (2.0 * CONIC_PI) + 0.5) * sky->width - 0.5;
+  double y = conic_angle(sqrt(seen[0] * seen[0] + seen[2] * seen[2]), -seen[1]) / CONIC_PI * sky->height - 0.5;
+  y = y > 0.0 ? y < sky->height - 1 ? y : sky->height - 1 : 0.0;
+  x = x < 0.0 ? x + sky->width : x;
+  const int left = (int)x % sky->width, right = (left + 1) % sky->width, top = (int)y;
+  const int bottom = top + (top + 1 < sky->height);
+  const float across = (float)(x - (int)x), down = (float)(y - top);
+  const float *rows[2] = {sky->color + 3 * (size_t)top * (size_t)sky->width,
+                          sky->color + 3 * (size_t)bottom * (size_t)sky->width};
+  for (int c = 0; c < 3; c++) {
+    float ends[2];
+    for (int row = 0; row < 2; row++)
+      ends[row] = rows[row][3 * left + c] + across * (rows[row][3 * right + c] - rows[row][3 * left + c]);
+    color[c] = ends[0] + down * (ends[1] - ends[0]);
+  }
+}

@@ -71,6 +71,7 @@ static void fill_options(const conic_shot_work *work, conic_lighting_options *op
   options->samples = shot->view.samples;
   options->isa = shot->render.isa;
   options->sky = shot->light.sky;
+  options->reflectance = shot->light.reflectance;
 }
 
 /* What was chosen last is a map's. */

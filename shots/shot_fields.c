@@ -222,6 +222,7 @@ static const conic_shot_row shot_light_list[] = {
     {CONIC_ROW_LIST, AT(lamps), NULL, "lights with a place", .of = &lamp_rows, .length = offsetof(S, n_lamps)},
     {CONIC_ROW_FLOAT, AT(sun_radius_deg), "degrees", "how large each light without a place is", IN(0, 90)},
     {CONIC_ROW_LEFT_OUT, AT(sky), .meaning = "the input whose role is sky"},
+    {CONIC_ROW_DOUBLE, AT(reflectance), NULL, "how much of each colour is the sky, mirrored", IN(0, 1)},
     RESERVED(reserved)};
 TABLE(shot_light, NULL, conic_fault_of_shot_light)
 #undef S

@@ -287,6 +287,9 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "light from all around; of two colours, the first falls on what faces up, the second on what faces down [the "
        "studio's]; or a picture of all directions, such as sky.exr or sky.pfm, which needs --ao",
        .parse = cli_parse_sky, .acts = {.on = CLI_SURFACES, .needs = CLI_FACT(LIT)}},
+      {"reflect", CLI_NUMBER, &job->shot.light.reflectance, "R",
+       "so much of each colour, 0 to 1, is the picture of --sky as a smooth surface mirrors it; nothing hides it [0]",
+       0, 1, .acts = {.on = CLI_SURFACES, .needs = CLI_FACT(LIT)}},
       {"background", CLI_PARSED, job, "R,G,B[:R,G,B]",
        "linear colour behind the scene, or two from top to bottom, or none: transparent [dark greys in PNG and JPEG, "
        "else none]",

@@ -75,6 +75,8 @@ static int check_each_value(const cli_session *session, const cli_scene_words *w
   if (job->sky_path && !job->n_directions && !(job->is_aov_given && job->shot.planes & 1u << CONIC_PLANE_AO))
     return cli_usage("%s: the light of %s comes from so many directions as --ao says; give it, too", command,
                      job->sky_path);
+  if (job->shot.light.reflectance > 0.0 && !job->sky_path)
+    return cli_usage("%s: --reflect mirrors the picture of --sky; give it, too", command);
   if (job->is_unlit && job->n_light_words > 1)
     return cli_usage("%s: --light none does not go with another --light", command);
   if (words->passes != 1 && words->passes != 3)

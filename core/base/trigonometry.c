@@ -1,5 +1,7 @@
 #include "core/base/trigonometry.h"
 
+#include <math.h>
+
 /* π/2 in three parts; the first two have zeros in their last 20 bits or more, so that k·part is exact for |k| < 2²⁰. */
 static const double half_pi_1 = 0x1.921fb544p+0;
 static const double half_pi_2 = 0x1.0b4611a6p-34;
@@ -63,4 +65,22 @@ double conic_cos(double x_rad) {
 
 double conic_tan(double x_rad) {
   return conic_sin(x_rad) / conic_cos(x_rad);
+}
+
+/* Halves the angle until the series of the arc sine is short. */
+double conic_angle(double y, double x) {
+  double length = sqrt(x * x + y * y), cosine = x / length, sine = fabs(y) / length, sum = 0.0, term;
+  if (!(length > 0.0))
+    return 0.0;
+  for (int i = 0; i < 5; i++) {
+    double larger = sqrt(0.5 * (1.0 + fabs(cosine))), lesser = 0.5 * sine / larger;
+    sine = cosine > 0.0 ? lesser : larger;
+    cosine = cosine > 0.0 ? larger : lesser;
+  }
+  term = 32.0 * sine;
+  for (int n = 1; n < 16; n += 2) {
+    sum += term / (double)n;
+    term *= sine * sine * (double)n / (double)(n + 1);
+  }
+  return y < 0.0 ? -sum : sum;
 }

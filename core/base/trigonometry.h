@@ -7,6 +7,8 @@
 double conic_sin(double x_rad);
 double conic_cos(double x_rad);
 double conic_tan(double x_rad);
+/* The angle of (x, y), from -π to π; 0 of (0, 0). Off by 1e-14 at most; √, too, is used. */
+double conic_angle(double y, double x);
 
 static inline double conic_radians(double degrees) {
   return degrees * (CONIC_PI / 180.0);

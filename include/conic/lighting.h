@@ -82,9 +82,10 @@ typedef struct conic_lighting_options {
                     shines from the point that first_direction chooses; else from its middle */
   const conic_lamp *lamps; /* the picture was drawn without them; their light is added */
   size_t n_lamps;          /* 0 to CONIC_MAX_LAMPS */
+  double reflectance;      /* 0 to 1: so much of each colour is the sky, mirrored by the plane N; nothing hides it */
 } conic_lighting_options;
 
-/* None, no lamps, no shadows, 1 texel, 4096 at most, 1 sample. */
+/* None, no lamps, no shadows, no reflections, 1 texel, 4096 at most, 1 sample. */
 CONIC_API void conic_lighting_options_init_sized(conic_lighting_options *options, size_t size);
 #define conic_lighting_options_init(options) conic_lighting_options_init_sized(options, sizeof *(options))
 

@@ -58,7 +58,8 @@ typedef struct conic_shot_light {
   conic_lamp lamps[CONIC_MAX_LAMPS];
   float sun_radius_deg[CONIC_MAX_LIGHTS]; /* of the lights with a direction, 0 to 90: how large they are for samples */
   const conic_sky *sky;                   /* null: none; the caller's */
-  uint64_t reserved[4];
+  double reflectance;                     /* 0 to 1: so much of each colour is the sky, mirrored */
+  uint64_t reserved[3];
 } conic_shot_light;
 
 typedef struct conic_shot {

@@ -88,6 +88,7 @@ def render(
     near: Optional[Union[str, float, Sequence[float]]] = None,
     light: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     sky: Optional[Union[str, float, Sequence[float]]] = None,
+    reflect: Optional[float] = None,
     k: Optional[int] = None,
     columns: Optional[Union[str, float, Sequence[float]]] = None,
     tile: Optional[int] = None,
@@ -236,6 +237,8 @@ def render(
         studio, several that suit most scenes; none. Up to 8 of a direction, 8 lamps [studio]
     sky: light from all around; of two colours, the first falls on what faces up, the second on what faces down
         [the studio's]; or a picture of all directions, such as sky.exr or sky.pfm, which needs --ao
+    reflect: so much of each colour, 0 to 1, is the picture of --sky as a smooth surface mirrors it; nothing
+        hides it [0]
     background: linear colour behind the scene, or two from top to bottom, or none: transparent [dark greys in
         PNG and JPEG, else none]
     exposure: stops, -100 to 100: each doubles the brightness; auto: as bright as leaves 1 pixel in 20 near
@@ -312,6 +315,7 @@ def verify(
     shade: Optional[Literal["none", "lambert", "phong"]] = None,
     light: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     sky: Optional[Union[str, float, Sequence[float]]] = None,
+    reflect: Optional[float] = None,
     background: Optional[Union[str, float, Sequence[float]]] = None,
     exposure: Optional[Union[str, float, Sequence[float]]] = None,
     planes: Optional[Union[str, float, Sequence[float]]] = None,
@@ -411,6 +415,8 @@ def verify(
         studio, several that suit most scenes; none. Up to 8 of a direction, 8 lamps [studio]
     sky: light from all around; of two colours, the first falls on what faces up, the second on what faces down
         [the studio's]; or a picture of all directions, such as sky.exr or sky.pfm, which needs --ao
+    reflect: so much of each colour, 0 to 1, is the picture of --sky as a smooth surface mirrors it; nothing
+        hides it [0]
     background: linear colour behind the scene, or two from top to bottom, or none: transparent [dark greys in
         PNG and JPEG, else none]
     exposure: stops, -100 to 100: each doubles the brightness; auto: as bright as leaves 1 pixel in 20 near
@@ -495,6 +501,7 @@ def judge(
     shade: Optional[Literal["none", "lambert", "phong"]] = None,
     light: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     sky: Optional[Union[str, float, Sequence[float]]] = None,
+    reflect: Optional[float] = None,
     background: Optional[Union[str, float, Sequence[float]]] = None,
     exposure: Optional[Union[str, float, Sequence[float]]] = None,
     planes: Optional[Union[str, float, Sequence[float]]] = None,
@@ -601,6 +608,8 @@ def judge(
         studio, several that suit most scenes; none. Up to 8 of a direction, 8 lamps [studio]
     sky: light from all around; of two colours, the first falls on what faces up, the second on what faces down
         [the studio's]; or a picture of all directions, such as sky.exr or sky.pfm, which needs --ao
+    reflect: so much of each colour, 0 to 1, is the picture of --sky as a smooth surface mirrors it; nothing
+        hides it [0]
     background: linear colour behind the scene, or two from top to bottom, or none: transparent [dark greys in
         PNG and JPEG, else none]
     exposure: stops, -100 to 100: each doubles the brightness; auto: as bright as leaves 1 pixel in 20 near
@@ -676,6 +685,7 @@ def explain(
     shade: Optional[Literal["none", "lambert", "phong"]] = None,
     light: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     sky: Optional[Union[str, float, Sequence[float]]] = None,
+    reflect: Optional[float] = None,
     background: Optional[Union[str, float, Sequence[float]]] = None,
     exposure: Optional[Union[str, float, Sequence[float]]] = None,
     planes: Optional[Union[str, float, Sequence[float]]] = None,
@@ -771,6 +781,8 @@ def explain(
         studio, several that suit most scenes; none. Up to 8 of a direction, 8 lamps [studio]
     sky: light from all around; of two colours, the first falls on what faces up, the second on what faces down
         [the studio's]; or a picture of all directions, such as sky.exr or sky.pfm, which needs --ao
+    reflect: so much of each colour, 0 to 1, is the picture of --sky as a smooth surface mirrors it; nothing
+        hides it [0]
     background: linear colour behind the scene, or two from top to bottom, or none: transparent [dark greys in
         PNG and JPEG, else none]
     exposure: stops, -100 to 100: each doubles the brightness; auto: as bright as leaves 1 pixel in 20 near
@@ -1280,6 +1292,7 @@ def gradient(
     shade: Optional[Literal["none", "lambert", "phong"]] = None,
     light: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     sky: Optional[Union[str, float, Sequence[float]]] = None,
+    reflect: Optional[float] = None,
     background: Optional[Union[str, float, Sequence[float]]] = None,
     exposure: Optional[Union[str, float, Sequence[float]]] = None,
     planes: Optional[Union[str, float, Sequence[float]]] = None,
@@ -1368,6 +1381,8 @@ def gradient(
         studio, several that suit most scenes; none. Up to 8 of a direction, 8 lamps [studio]
     sky: light from all around; of two colours, the first falls on what faces up, the second on what faces down
         [the studio's]; or a picture of all directions, such as sky.exr or sky.pfm, which needs --ao
+    reflect: so much of each colour, 0 to 1, is the picture of --sky as a smooth surface mirrors it; nothing
+        hides it [0]
     background: linear colour behind the scene, or two from top to bottom, or none: transparent [dark greys in
         PNG and JPEG, else none]
     exposure: stops, -100 to 100: each doubles the brightness; auto: as bright as leaves 1 pixel in 20 near

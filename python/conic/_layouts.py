@@ -368,7 +368,8 @@ class ShotLight(ctypes.Structure):
         ("lamps", Lamp * MAX_LAMPS),
         ("sun_radius_deg", c_float * MAX_LIGHTS),
         ("sky", c_void_p),
-        ("reserved", c_uint64 * 4),
+        ("reflectance", c_double),
+        ("reserved", c_uint64 * 3),
     ]
 
 

@@ -130,9 +130,10 @@ words("S19", "Fig. 11: the bunny as points, splats, a mesh and patches", FULL, "
       "[splats](../pictures/surfaces/bunny.png), [patches](../pictures/surfaces/patch.png)")
 
 
-@add("S20", "Fig. 12: an environment mirrored in 1,000 vertices, as a mesh and as patches", PARTLY, "test_patches",
-     "No reflections, but what they show, the normals: a mirrored direction is off by twice as much, 0.6 pixels of a panorama "
-     "1,024 wide by patches, 16 by splats")
+@add("S20", "Fig. 12: an environment mirrored in 1,000 vertices, as a mesh and as patches", FULL,
+     "conic render torus.ply --method patch --sky sky.exr --ao 16 --reflect 1; test_patches",
+     "[picture](../pictures/papers/mirror.png): splats and patches. A mirrored direction is off by twice what the normal is: 0.6 "
+     "pixels of a panorama 1,024 wide by patches, 16 by splats")
 def _(bench):
     found = bench.test("test_patches", r"normals off by ([\d.]+) deg rms.*as splats;\n +([\d.]+), ")[0][0]
     return f"torus: normals off by {found[0]}° rms as splats, {found[1]}° as patches"

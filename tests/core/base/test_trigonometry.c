@@ -14,6 +14,12 @@ int main(void) {
     CHECK_NEAR(conic_sin((double)i * 97.31), sin((double)i * 97.31), 2.3e-16);
   CHECK_NEAR(conic_tan(conic_radians(20.0)), tan(20.0 * CONIC_PI / 180.0), 2.3e-16);
   CHECK(conic_sin(0.0) == 0.0 && conic_cos(0.0) == 1.0);
+  for (int i = -4000; i <= 4000; i++) {
+    double angle = (double)i * (CONIC_PI / 4000.0), length = 1.0 + (double)(i % 5 + 4);
+    CHECK_NEAR(conic_angle(length * sin(angle), length * cos(angle)), atan2(length * sin(angle), length * cos(angle)),
+               1e-14);
+  }
+  CHECK(conic_angle(0.0, 0.0) == 0.0);
   double infinite = HUGE_VAL;
   CHECK(isnan(conic_sin(infinite)) && isnan(conic_cos(infinite)));
 
