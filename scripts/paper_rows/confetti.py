@@ -78,8 +78,7 @@ words("C8", "Fig. 15: 512² points of a checkerboard, τ 0.02 %: ψ(1,2) blurs m
 words("C9", "Fig. 16: ψ(4,5) is smooth with detail, ψ(6,3) faceted, τ 0", FULL, "scripts/paper-pictures",
       "[The lion](../pictures/papers/confetti-16.png)")
 words("C10", "§8: (3,6) to (5,4) are the best compromise", PARTLY, "scripts/kernels",
-      "No kernel is nearest everywhere. On six models these are within 0.1 dB of each other but for one; ψ(2,2) is nearest in "
-      "the mean, by 0.04 to 0.15 dB ([measured](../notes/kernels.md))")
+      "No kernel is nearest everywhere; of six models' mean ψ(2,2) is, by 0.04 to 0.15 dB ([measured](../notes/kernels.md))")
 
 
 words("C11", "§6.2, Fig. 11: frustum and normal-cone culling", FULL, "conic render x.cot --cull back")
@@ -148,8 +147,8 @@ def draw_levels(bench, errors, *options):
 
 @add("C18", "Table 2, 512²: Female 53 % of its points at τ 0, 20 % at 0.02 %, 18 % at 0.04 %", PARTLY,
      "conic render lion.cot --cull back --error PX",
-     "The paper does not say of what τ is a per cent. Of the picture's width, 0.02 % would be 0.10 px; but its Fig. 1 draws "
-     "113,012 splats at 1 px, more than the 60,876 of 0.02 %. In this table 20 % lies near 1.3 px", quick=True)
+     "It does not say of what τ is a per cent: of the picture's width 0.02 % would be 0.10 px, but its Fig. 1 draws more, "
+     "113,012 splats, at 1 px. Here 20 % lies near 1.3 px", quick=True)
 def _(bench):
     shares = [f"{error} px {100 * report['splats_drawn'] / 341989:.1f} %"
               for error, report in draw_levels(bench, (0, 0.1, 0.5, 1, 2, 4))]
@@ -182,8 +181,8 @@ def blended(bench, file, *options):
 
 @add("C21", "Fig. 18, 1280×1024, τ 0.02 %: few splats overlap, mostly 1 is blended", PARTLY,
      "conic render lion.cot --aov count --error PX --prefilter H",
-     "Outlines that leave no hole lie five deep, and the prefilter widens each by 1.5 px, which counts where points are as near "
-     "as that: [why](../notes/kernels.md#what-a-pixel-blends)", quick=True)
+     "Outlines without holes lie five deep, and the prefilter widens each by 1.5 px: "
+     "[why](../notes/kernels.md#what-a-pixel-blends)", quick=True)
 def _(bench):
     bench.octree("lion.ply")
     file = bench.path("lion.cot")
@@ -196,11 +195,9 @@ words("C22", "§8: no popping and no aliasing in motion", FULL, "test_octree_pic
       "Moving in at τ 1 px, frames differ 0.99–1.00 times as much as those of all splats")
 words("C23", "Future: transparency", FULL, "conic render --transparency", "[Exact, by sorted layers](transparency.md)")
 words("C24", "Future: visibility and blending in a single pass", PARTLY, "conic bench",
-      "Set-up is one pass for both; a tile is then visited for visibility and once more for blending, while it is in the "
-      "cache")
+      "Set-up is one pass; each tile is visited twice, while it is in the cache")
 words("C25", "Future: parameters of the kernel by themselves", ABSENT, "conic render --kernel",
-      "No rule by density is nearest everywhere: where outlines are below 5 pixels a Gaussian of cutoff 1 gains 0.1 to 0.8 dB on "
-      "four models, but a sphere's sharp squares ask for ψ(4,3) at 4, 9 and 18 pixels alike ([measured](../notes/kernels.md#by-density))")
+      "No rule by density is nearest everywhere: what is on a surface decides ([measured](../notes/kernels.md#by-density))")
 DEPARTURES = [
     "Covariances are about each node's mean, not the world's origin.",
     "A node's error is how far its ellipse stands from its leaves, not its size; tilt has a weight of its own.",

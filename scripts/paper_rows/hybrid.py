@@ -34,11 +34,11 @@ words("H4", "§3.2.4: levels of detail that keep the borders of patches", FULL, 
 words("H5", "§3.3.1, end of 3.3.2: surfels, and their levels by halving", FULL, "conic hybrid",
       "Ellipses; levels are nodes of a tree")
 words("H6", "Alg. 3.4: rays from three faces, l / c apart, between a least and a greatest distance", PARTLY,
-      "conic hybrid --sampling box --density 4", "26,291 surfels of the cow. No least and greatest distance: a patch is small where its surface bends, so l / c bounds "
-      "itself, and H15 reaches the thesis' counts without them")
+      "conic hybrid --sampling box --density 4", "26,291 surfels of the cow. No least and greatest distance: a patch is small where its "
+      "surface bends")
 words("H7", "§3.3.2: bump, displacement and procedural maps while sampling", ABSENT, "conic hybrid --texture",
-      "Colours of a texture are sampled. Maps of height or normals would move surfels off the mesh whose edges they must meet, "
-      "and no mesh of the thesis has one; displace the mesh first")
+      "Colours of a texture are sampled. Heights would move surfels off the mesh whose edges they must meet: displace the mesh "
+      "first")
 words("H8", "Eqs. 3.15–3.27: EWA by the Jacobian", FULL, "conic render --method affine",
       "Eq. 3.27 as corrected ([errata](../notes/errata.md))")
 words("H9", "§3.4.2, Figs. 4.5–4.6: a depth for each pixel, ε of 0.75–1.5 grid distances, three passes", FULL,
@@ -47,8 +47,8 @@ words("H9", "§3.4.2, Figs. 4.5–4.6: a depth for each pixel, ε of 0.75–1.5 
 
 @add("H11", "Table 4.2, Fig. 4.8: a checkerboard's surfels by their distance: 320 K at 0.005, 163 K, 80 K, 20 K, 3 K, < 1 K "
      "at 0.1", FULL, "conic hybrid --sampling box",
-     "Ours are area / distance² of a board of edge 1. The thesis' are eight times these at each distance, so its board has an "
-     "area of 8, or of 4 sampled from both sides: it does not say")
+     "Ours are area / distance² of a board of edge 1. The thesis' are eight times these, so its board is larger: it does not "
+     "say")
 def _(bench):
     board = bench.path("board.obj")
     with open(board, "w", encoding="utf-8") as file:
@@ -73,8 +73,8 @@ words("H14", "Figs. 4.4, 4.11, 4.16–4.20: pictures of the models", FULL, "scri
 
 
 @add("H15", "Table 4.3: cow 1,533 triangles + 51,731 surfels, 2.6 + 77 s; bunny 13,038 + 308,550, 30.6 + 182 s", FULL,
-     "conic hybrid " + " ".join(map(str, LIKE_THESIS)), "`--phase2` and `--density` chosen to come near its counts; our own "
-     "defaults keep more triangles, which draw faster", quick=True)
+     "conic hybrid " + " ".join(map(str, LIKE_THESIS)), "`--phase2` and `--density` come near its counts; our defaults keep more triangles, "
+     "which draw faster", quick=True)
 def _(bench):
     texts = []
     for model in MODELS:
@@ -106,8 +106,8 @@ def count_contributing(bench, file, *options):
 
 @add("H17", "Figs. 4.14–4.15, Table 4.3: 10.9–40.1 surfels contribute to a pixel: cow 11.2, bunny 15.8", FULL,
      "conic render x.chy --only surfels --aov count",
-     "The mean of the plane `count`, of pixels that show something. JSON `overdraw` is another thing: fragments a pixel, "
-     "those that are hidden too; [picture](../pictures/hybrid/overlap.png)", quick=True)
+     "The plane `count`, of pixels that show something. JSON `overdraw` counts hidden fragments, too; "
+     "[picture](../pictures/hybrid/overlap.png)", quick=True)
 def _(bench):
     texts = []
     for model in MODELS:

@@ -51,10 +51,10 @@ def write_cells(row, measured):
 
 HEAD = """# The five papers
 
-*Made by `scripts/papers`: do not edit.* Each table, figure and claim of the papers that conic builds on is a row: what
-the paper says, what conic gives, what shows it, and why where it is not the same. Counts and pictures are the same on
-every machine. Times are of one machine: only their ratios mean something. `test_…` are programs of `build/bin`, run in
-the project's folder; models are in `../shared/data`. What is wrong in a paper stands in [errata](../notes/errata.md).
+*Made by `scripts/papers`: do not edit.* Each table, figure and claim of the papers is a row: what it says, what
+conic gives, what shows it, and why it differs. Times are of one machine: only their ratios mean something.
+`test_…` are programs of `build/bin`; models are in `../shared/data`. What is wrong in a paper stands in
+[errata](../notes/errata.md).
 
 | paper | full | partly | absent | other on purpose |
 |---|---|---|---|---|

@@ -111,8 +111,8 @@ def _(bench):
 words("P6", "Fig. 3: discs that touch in the plane touch in the picture", FULL, "refimages/pas-3-conic; refimages/pas-3-affine",
       "Within 5e-3 px ([measured](../notes/accuracy.md))")
 words("P16", "Future: curved splats, n-gons", PARTLY, "conic render --method patch",
-      "Curved patches are drawn through points ([surfaces](surfaces.md)); no file holds curved splats: a curvature's three "
-      "numbers a splat would ask for a search along the ray at each pixel, where an outline has a form")
+      "Curved patches go through points ([surfaces](surfaces.md)); no file holds curved splats, which would ask for a search "
+      "along each pixel's ray")
 words("P17", "Future: hierarchies", FULL, "conic octree; conic layer; conic hybrid")
 DEPARTURES = [
     "Splats that are ill-conditioned are drawn: edge-on by the dual conic, across the near plane by the exact parameter.",

@@ -120,8 +120,7 @@ words("S15", "§5.2, Fig. 8: densifying at the vertices of a Voronoi diagram, 80
       "By the largest empty circles that darts find: 12,228 points leave no gap, 4.2e-3 off; "
       "[picture](../pictures/surfaces/densify.png)")
 words("S16", "§6.1: a hierarchy of spheres, whose nodes below a pixel are one point", PARTLY, "conic octree",
-      "Patches have no levels above them, and need none: an octree of the same points has levels of splats. At 128² the lion "
-      "takes 184 ms as patches, 8 ms by `--error 1`")
+      "An octree of the same points has the levels: at 128² the lion takes 184 ms as patches, 8 ms by `--error 1`")
 words("S17", "§6.2, Figs. 9–10: a patch's extent and spacing, evaluated by forward differences", FULL,
       "conic render --method patch", "Weights of the grid are even to 6 % rms; errors of the differences stay within 2 px "
       "steps")
@@ -132,8 +131,8 @@ words("S19", "Fig. 11: the bunny as points, splats, a mesh and patches", FULL, "
 
 @add("S20", "Fig. 12: an environment mirrored in 1,000 vertices, as a mesh and as patches", FULL,
      "conic render torus.ply --method patch --sky sky.exr --ao 16 --reflect 1; test_patches",
-     "[picture](../pictures/papers/mirror.png): splats and patches. A mirrored direction is off by twice what the normal is: 0.6 "
-     "pixels of a panorama 1,024 wide by patches, 16 by splats")
+     "[picture](../pictures/papers/mirror.png): splats and patches. Mirrored, normals are off by 0.6 pixels of a panorama 1,024 "
+     "wide by patches, 16 by splats")
 def _(bench):
     found = bench.test("test_patches", r"normals off by ([\d.]+) deg rms.*as splats;\n +([\d.]+), ")[0][0]
     return f"torus: normals off by {found[0]}° rms as splats, {found[1]}° as patches"
@@ -150,8 +149,8 @@ def _(bench):
 
 
 words("S22", "Future: local h, sharp features, a hierarchy from smooth to detailed, topology", PARTLY,
-      "conic mls -k K; conic mls --sharp", "The first two. A range of `--h` gives a sequence from smooth to detailed, as files; "
-      "topology is not found: `--hole` is given")
+      "conic mls -k K; conic mls --sharp", "The first two. Several `--h` give a sequence from smooth to detailed; topology is not "
+      "found: `--hole` is given")
 DEPARTURES = [
     "The plane is projected until the point is a fixed point: the printed search does not give one.",
     "Densifying fills the largest empty circles that darts find, not the vertices of a Voronoi diagram.",

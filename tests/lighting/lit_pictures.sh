@@ -94,6 +94,11 @@ grep -q '"ao": 64' planes.json || fail "--aov ao draws no maps"
 run 0 render knot.ply --size 32x16 --background 1,2,3 -o sky.exr
 run 0 render knot.ply --size 32x32 --light none --sky sky.exr --ao 4 -o lit.exr --json sky.json
 grep -q '"sky_picture": "sky.exr"' sky.json || fail "the sky is not named"
+run 0 render knot.ply --size 32x32 --light none --sky sky.exr --ao 4 --reflect 0.5 -o mirror.exr
+run 0 render knot.ply --size 32x32 --light none --sky sky.exr --ao 4 --reflect 0.5 -o c.exr --threads 3 --tile 8
+cmp -s mirror.exr c.exr || fail "threads or tiles change what is mirrored"
+run 1 diff lit.exr mirror.exr
+run 2 render knot.ply --size 32x32 --reflect 0.5 -o lit.exr
 run 2 render knot.ply --size 32x32 --sky sky.exr -o lit.exr
 run 3 render knot.ply --size 32x32 --sky none.exr --ao 4 -o lit.exr
 printf 'PF\n2 1\n-1\n' > below.pfm
