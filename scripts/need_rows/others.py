@@ -19,7 +19,7 @@ class Look:
     """A picture's camera, from its statistics."""
 
     def __init__(self, statistics):
-        camera = statistics["camera"]
+        self.camera = camera = statistics["camera"]
         self.width, self.height = camera["width"], camera["height"]
         self.fx, self.fy, self.cx, self.cy = (camera[key] for key in ("fx", "fy", "cx", "cy"))
         self.rows = camera["world_to_camera"]

@@ -134,10 +134,16 @@ def read_ply(path):
     names, rows, faces, at = [], [], [], 0
     for name, n, columns in elements:
         if name == "vertex":
-            names = [column[-1] for column in columns]
-            row = struct.Struct(order + "".join(TYPES[column[0]] for column in columns))
-            rows = list(row.iter_unpack(body[at:at + n * row.size]))
-            at += n * row.size
+            numbers = [column for column in columns if column[0] != "list"]
+            lists = columns[len(numbers):]  # behind the others, where there are any
+            names = [column[-1] for column in numbers]
+            row = struct.Struct(order + "".join(TYPES[column[0]] for column in numbers))
+            for _ in range(n):
+                rows.append(row.unpack_from(body, at))
+                at += row.size
+                for column in lists:
+                    k = struct.unpack_from(order + TYPES[column[1]], body, at)[0]
+                    at += struct.calcsize(TYPES[column[1]]) + k * struct.calcsize(TYPES[column[2]])
         elif name == "face":
             count, corner = struct.Struct(order + TYPES[columns[0][1]]), TYPES[columns[0][2]]
             for _ in range(n):
@@ -164,6 +170,8 @@ def read_discs(path, cutoff=1.5):
     discs = []
     for row in rows:
         n = [row[k] for k in at]
+        if not all(map(math.isfinite, n)):
+            continue
         discs.append((tuple(n[:3]), tuple(cutoff * x for x in n[3:6]), tuple(cutoff * x for x in n[6:]),
                       bool(is_dot is not None and row[is_dot])))
     return discs
