@@ -187,10 +187,9 @@ static conic_status gather_sky(conic_light_work *l) {
 
 /* --- what surfaces mirror --- */
 
-static void mirror_row(void *data, size_t y, int i_thread) {
+static void mirror_row(void *data, size_t y) {
   const conic_light_work *l = data;
   const float part = (float)l->options->reflectance;
-  (void)i_thread;
   for (size_t x = 0; x < (size_t)l->image->width; x++) {
     size_t pixel = conic_light_pixel(l, x, y);
     const float *n = (const float *)l->image->planes[CONIC_PLANE_NORMAL] + 3 * pixel;

@@ -2,7 +2,7 @@
 
 #include "core/base/random.h"
 #include "core/estimate/neighbours.h"
-#include "core/splats/places.h"
+#include "core/estimate/places.h"
 
 enum { SHARED_LEVELS = 6 };
 

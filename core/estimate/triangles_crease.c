@@ -3,8 +3,8 @@
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
 #include "core/estimate/neighbourhood.h"
+#include "core/estimate/places.h"
 #include "core/splats/columns.h"
-#include "core/splats/places.h"
 
 /* Where more corners meet, all get their faces' normals: each would have to look at all others. */
 enum { MOST_CORNERS = 256 };

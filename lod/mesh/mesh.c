@@ -4,7 +4,7 @@
 #include "core/base/radix.h"
 #include "core/base/random.h"
 #include "core/base/vectors.h"
-#include "core/splats/places.h"
+#include "core/estimate/places.h"
 
 static const uint32_t none = UINT32_MAX;
 

@@ -71,10 +71,9 @@ static uint64_t key_of(const cells_job *job, size_t i) {
   return cell_of(job, p) | (uint64_t)(conic_dot(normal, toward) > 0.0) << SIDE_SHIFT;
 }
 
-static void key_task(void *data, size_t i_task, int i_thread) {
+static void key_task(void *data, size_t i_task) {
   cells_job *job = data;
   size_t end = (i_task + 1) * ITEMS_A_TASK;
-  (void)i_thread;
   for (size_t i = i_task * ITEMS_A_TASK; i < end && i < job->from->count; i++)
     job->items[i] = (conic_radix_item){key_of(job, i), (uint32_t)i};
 }
@@ -218,10 +217,9 @@ static int is_first_of_cell(const cells_job *job, size_t i) {
 }
 
 /* The cells that begin among so many splats. */
-static void join_task(void *data, size_t i_task, int i_thread) {
+static void join_task(void *data, size_t i_task) {
   const cells_job *job = data;
   size_t last = (i_task + 1) * ITEMS_A_TASK, end;
-  (void)i_thread;
   for (size_t i = i_task * ITEMS_A_TASK; i < last && i < job->n; i = end) {
     for (end = i + 1; end < job->n && !is_first_of_cell(job, end);)
       end++;
@@ -244,11 +242,10 @@ static void list_arrays(const conic_splats *s, float *arrays[N_ARRAYS]) {
   arrays[12] = s->opacity;
 }
 
-static void gather_task(void *data, size_t i_task, int i_thread) {
+static void gather_task(void *data, size_t i_task) {
   const cells_job *job = data;
   size_t begin = i_task * ITEMS_A_TASK, end = begin + ITEMS_A_TASK < job->n ? begin + ITEMS_A_TASK : job->n;
   float *to[N_ARRAYS], *from[N_ARRAYS];
-  (void)i_thread;
   list_arrays(job->sorted, to);
   list_arrays(job->from, from);
   for (int k = 0; k < N_ARRAYS; k++)

@@ -1,4 +1,4 @@
-#include "core/splats/places.h"
+#include "core/estimate/places.h"
 
 #include "core/base/random.h"
 
