@@ -17,7 +17,8 @@ static conic_status open_draco_array(conic_gltf_reader *reader, double id, const
                                      conic_gltf_array *array) {
   static const float most[] = {127.0f, 255.0f, 32767.0f, 65535.0f};
   const conic_draco_mesh *mesh = &reader->draco;
-  const int i_type = (int)accessor->component - CONIC_GLTF_INT8;
+  const int i_type =
+      conic_gltf_is_index(accessor->component, CONIC_GLTF_FLOAT) ? (int)accessor->component - CONIC_GLTF_INT8 : -1;
   const size_t n_values = mesh->n_vertices * (size_t)n;
   float *values = conic_memory_allocate(reader->gltf.context, n_values, sizeof *values);
   *array = (conic_gltf_array){.bytes = (unsigned char *)values, .own = (unsigned char *)values, .n = n};
@@ -353,8 +354,11 @@ static conic_status read_corners(conic_gltf_reader *reader, const conic_gltf_pri
   if (primitive->indices == CONIC_GLTF_NONE && !reader->draco.mesh)
     return CONIC_OK;
   conic_status status = reader->draco.mesh ? CONIC_OK : conic_gltf_open_array(gltf, primitive->indices, &array);
-  if (status == CONIC_OK && !reader->draco.mesh && (array.n != 1 || array.component == CONIC_GLTF_FLOAT))
-    status = conic_gltf_wrong(gltf, "the indices of a primitive are no whole numbers");
+  if (status == CONIC_OK && !reader->draco.mesh &&
+      (array.n != 1 || (array.component != CONIC_GLTF_UINT8 && array.component != CONIC_GLTF_UINT16 &&
+                        array.component != CONIC_GLTF_UINT32)))
+    status = conic_gltf_wrong(gltf, "the indices of a primitive are of another type than they have");
+  array.is_normalized = 0;
   corners->n = reader->draco.mesh ? 3 * reader->draco.n_triangles : array.count;
   if (status == CONIC_OK) {
     corners->indices = conic_memory_allocate(gltf->context, corners->n, sizeof *corners->indices);
