@@ -48,9 +48,17 @@ printf '{"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"me
   "bufferViews": [{"buffer": 0, "byteLength": 36}], "accessors": [{"bufferView": 0, "componentType": 5126,
   "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}]}' > g.gltf
 printf '\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x80\x3f\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x80\x3f\0\0\0\0' > g.bin
-if "$conic" info g.gltf > out 2> err; then
-  kept g.bin render g.gltf --as mesh --size 16x16 -o a.pfm --json g.bin
-fi
+kept g.bin render g.gltf --as mesh --size 16x16 -o a.pfm --json g.bin
+# (which it may not name outside of its folder)
+mkdir inner
+sed 's:g.bin:../g.bin:' g.gltf > inner/g.gltf
+for command in 'render --as mesh --size 16x16 -o a.pfm' info 'prepare -o b.ply' 'octree -o b.cot' 'hybrid -o b.chy'; do
+  # shellcheck disable=SC2086
+  run 3 $command inner/g.gltf
+  grep -q '../g.bin is not in the file.s folder or below it (--allow-outside' err || fail "$command: $(cat err)"
+  # shellcheck disable=SC2086
+  run 0 $command inner/g.gltf --allow-outside
+done
 printf '{"width": 16, "height": 16, "fx": 16, "fy": 16, "cx": 8, "cy": 8,
   "world_to_camera": [[1, 0, 0, 0], [0, -1, 0, 0], [0, 0, -1, 6], [0, 0, 0, 1]]}' > camera.json
 kept camera.json render s.ply --camera camera.json -o a.pfm --json camera.json
