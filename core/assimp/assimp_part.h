@@ -3,7 +3,7 @@
 
 #include "core/assimp/assimp_process.h"
 #include "core/files/input.h"
-#include "core/splats/mesh_parts.h"
+#include "core/meshes/mesh_parts.h"
 
 /* Takes the data after a part's record. Errors: INPUT, MEMORY, CANCELLED. */
 conic_status conic_assimp_take_part(conic_assimp_process *process, const conic_assimp_record *record,

@@ -6,8 +6,8 @@
 #include "core/base/color.h"
 #include "core/files/number.h"
 #include "core/formats/readers.h"
+#include "core/meshes/point_slots.h"
 #include "core/splats/face_colors.h"
-#include "core/splats/point_slots.h"
 
 enum { HEAD_BYTES = 84, FACE_BYTES = 50 };
 

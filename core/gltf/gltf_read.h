@@ -4,7 +4,7 @@
 #include "core/files/input.h"
 #include "core/gltf/draco.h"
 #include "core/gltf/gltf.h"
-#include "core/splats/mesh_parts.h"
+#include "core/meshes/mesh_parts.h"
 
 /* Reads from the start of the file; a delivery gets nothing. On failure *model is for the caller to release. Errors:
  * INPUT, UNSUPPORTED (an extension that is required), MEMORY, CANCELLED. */

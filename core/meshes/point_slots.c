@@ -1,4 +1,4 @@
-#include "core/splats/point_slots.h"
+#include "core/meshes/point_slots.h"
 
 /* The bits of a number, with -0 as 0. */
 static uint32_t bits_of(float value) {

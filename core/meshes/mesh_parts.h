@@ -2,9 +2,9 @@
  * corners differ in other attributes. */
 #pragma once
 
+#include "core/meshes/point_slots.h"
 #include "core/splats/builder.h"
 #include "core/splats/faces.h"
-#include "core/splats/point_slots.h"
 
 typedef struct conic_mesh_parts {
   conic_context *context;

@@ -1,4 +1,4 @@
-#include "core/splats/mesh_parts.h"
+#include "core/meshes/mesh_parts.h"
 
 #include "core/base/vectors.h"
 
