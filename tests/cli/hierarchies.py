@@ -23,7 +23,7 @@ def expect(is_good, what):
 
 
 def draw(folder, name, options, number="p"):
-    code, lines, _ = run_conic(["render", "--plain", name, "-o", f"{number}.pfm", "--size", "160x120", "--up", "z",
+    code, lines, _ = run_conic(["render", "--plain", name, "-o", f"{number}.pfm", "--size", "112x84", "--up", "z",
                                 "--json", f"{number}.json"] + options, folder)
     told = None
     if code == 0:

@@ -8,6 +8,6 @@ if ! "$conic" --version | grep '^In this build:' | grep zstd | grep -q CURL || !
   echo "skipped: this build is without zstd or libcurl, or there is no python3" >&2
   exit 77
 fi
-python3 "$1/tests/cli/hostile_hierarchies.py" "$conic" "$1/../shared/data/clouds" 37 > table || fail "$(grep -v '^    ' table)"
+python3 "$1/tests/cli/hostile_hierarchies.py" "$conic" "$1/../shared/data/clouds" 61 > table || fail "$(grep -v '^    ' table)"
 grep cases table
 [[ $failures -eq 0 ]]

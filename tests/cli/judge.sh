@@ -55,7 +55,7 @@ run 0 judge many.ply --camera inside.json --profile gsplat-1.6 --picture inside.
 has '^vague     [1-9]'
 
 # Splats by every method, a mesh and a hybrid; conic's own files say how many samples they have.
-run 0 make knot -n 1500 -o knot.ply
+run 0 make knot -n 500 -o knot.ply
 printf 'v -1 -1 0\nv 1 -1 0\nv 1 1 .5\nv -1 1 .2\nv 0 0 1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n' > tent.obj
 for method in conic affine ray auto disc point; do
   run 0 render knot.ply --method $method --size 48x40 --aov all -o k.exr

@@ -6,7 +6,7 @@ set -uo pipefail
 source "$1/tests/support/program.bash"
 
 small=(--cloud-size 64 --threads 1)
-"$conic" make knot -n 60000 -o large.ply
+"$conic" make knot -n 24000 -o large.ply
 run_as_typed 0 layer large.ply -o whole.lpc "${small[@]}"
 
 n_listed() { # WHAT: parts of that name which out.lpc.branches lists
@@ -28,7 +28,7 @@ is_done() {
 # At several moments, and a list whose last line is torn
 both=(--resumable --resume out.lpc)
 n_before=0
-for kib in 130 300 500; do
+for kib in 60 120 200; do
   stop_at $kib layer large.ply -o out.lpc "${small[@]}" "${both[@]}"
   n=$(n_listed branch)
   [[ $n -gt $n_before ]] || fail "up to $kib KiB there are $n branches, not more than $n_before"
@@ -37,11 +37,11 @@ for kib in 130 300 500; do
 done
 run_as_typed 0 layer large.ply -o out.lpc "${small[@]}" --resume out.lpc --json kept.json
 grep -q '"samples_finished": [1-9]' kept.json || fail "nothing of what was finished is told: $(grep finished kept.json)"
-grep -q '^conic: [0-9]* of 60000 samples were in finished branches' err || fail "how much was finished: $(cat err)"
+grep -q '^conic: [0-9]* of 24000 samples were in finished branches' err || fail "how much was finished: $(cat err)"
 is_done whole.lpc
 
 # However the options are spelled, and with more memory
-stop_at 300 layer large.ply -o out.lpc "${small[@]}" --resumable
+stop_at 120 layer large.ply -o out.lpc "${small[@]}" --resumable
 run_as_typed 0 layer --memory 512 -k 20 --cutoff 1.5 --cloud-size=64 ./large.ply --resume out.lpc -o out.lpc --json kept.json
 grep -q '"samples_finished": [1-9]' kept.json || fail "other words for the same are not gone on with"
 is_done whole.lpc
@@ -55,7 +55,7 @@ run_as_typed 0 layer large.ply -o out.lpc "${small[@]}" "${both[@]}"
 is_done whole.lpc
 
 # A branch that is not as it was written is made again; another key, or nothing to go on with, is told of.
-stop_at 300 layer large.ply -o out.lpc "${small[@]}" --resumable
+stop_at 120 layer large.ply -o out.lpc "${small[@]}" --resumable
 branch=$(ls out.lpc.branches/*.branch | head -n 1)
 printf x | dd of="$branch" bs=1 seek=500 conv=notrunc 2> dd.err
 run_as_typed 3 layer large.ply -o out.lpc --cloud-size 65 "${both[@]}"
@@ -75,14 +75,14 @@ is_done whole.lpc
 
 # What goes on is kept likewise: its bytes decide the key, too.
 run_as_typed 0 merge whole.lpc whole.lpc -o merged.lpc
-stop_at 300 merge whole.lpc whole.lpc -o out.lpc "${both[@]}"
+stop_at 120 merge whole.lpc whole.lpc -o out.lpc "${both[@]}"
 run_as_typed 0 merge whole.lpc whole.lpc -o out.lpc "${both[@]}"
 is_done merged.lpc
 cp whole.lpc more.lpc
 "$conic" make sphere -n 9000 -o few.ply
 run_as_typed 0 layer few.ply --append -o more.lpc
 cp whole.lpc out.lpc
-stop_at 300 layer few.ply --append -o out.lpc --resumable
+stop_at 140 layer few.ply --append -o out.lpc --resumable
 cmp whole.lpc out.lpc || fail "a file that goes on is gone before it is whole"
 run_as_typed 0 layer few.ply --append -o out.lpc --resume out.lpc
 is_done more.lpc

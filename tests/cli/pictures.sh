@@ -6,7 +6,7 @@ source "$1/tests/support/program.bash"
 in_build() { # NAME …: one of these libraries
   "$conic" --version | grep -qE "^In this build:.*($1)"
 }
-run 0 make knot -n 3000 -o knot.ply
+run 0 make knot -n 600 -o knot.ply
 picture="--plain --size 40x30"
 
 # Standard output is like a file

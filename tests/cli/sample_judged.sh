@@ -55,8 +55,8 @@ awk '{
 [[ ! -s wrong ]] || fail "the shutter: $(cat wrong)"
 
 # The same samples are judged, and their mean; another one is not taken for it.
-run 0 make knot -n 2000 -o knot.ply
-scene="knot.ply --size 60x44 --zoom 1.5"
+run 0 make knot -n 800 -o knot.ply
+scene="knot.ply --size 44x32 --zoom 1.5"
 lens="--aperture 0.4 --blades 5"
 # shellcheck disable=SC2086
 {
@@ -86,10 +86,10 @@ fi
 run 0 make sphere -n 500 -o sphere.ply
 echo '[{"input": 1, "frame": 0, "matrix": [[1,0,0,0],[0,1,0,0],[0,0,1,0]]},' \
   '{"input": 1, "frame": 1, "matrix": [[0,0,1,0.5],[0,1,0,0],[-1,0,0,0]]}]' > turn.json
-run 0 verify sphere.ply knot.ply --size 60x44 --accumulate 3 --motion turn.json --shutter 0:0.5 --json -
+run 0 verify sphere.ply knot.ply --size 44x32 --accumulate 3 --motion turn.json --shutter 0:0.5 --json -
 has '"wrong_pixels": 0'
 if "$conic" --version | grep -q '^In this build:.*OpenEXR'; then
-  both="sphere.ply knot.ply --size 60x44 --accumulate 3 --motion turn.json --shadow --ao 4"
+  both="sphere.ply knot.ply --size 44x32 --accumulate 3 --motion turn.json --shadow --ao 4"
   # shellcheck disable=SC2086
   {
     run 0 render $both --shutter 0:1 -o moved.exr --threads 1

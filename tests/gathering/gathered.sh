@@ -10,7 +10,7 @@ if ! "$conic" --version | grep -q '^In this build:.*OpenEXR'; then
   echo "skipped: planes are compared in EXR files, which this build does not write"
   exit 77
 fi
-"$conic" make knot -n 3000 -o knot.ply
+"$conic" make knot -n 1000 -o knot.ply
 "$conic" make sphere -n 4000 -o sphere.ply
 camera() { # NAME, MEMBERS …: from the middle of the scene, or as said
   printf '{%s, "world_to_camera": [[1,0,0,0],[0,1,0,0],[0,0,1,%s],[0,0,0,1]]}' "$2" "${3:-0}" > "$1.json"
@@ -24,7 +24,7 @@ camera lens '"lens": "opencv", "distortion": [-0.1, 0.02, 1e-3, 1e-3], "width": 
   "cx": 32, "cy": 24' 5
 for how in "--projection panorama --size 80x40" "--projection fisheye --fov 170 --eye 0,0,0.5 --size 48x48" \
   "--projection orthographic --size 48x40" "--projection cube --size 16x96" "--camera lens.json"; do
-  for what in "" "--accumulate 5 --aperture 0.2 --ao 8 --shadow"; do
+  for what in "" "--accumulate 3 --aperture 0.2 --ao 8 --shadow"; do
     run 0 render knot.ply $how $what --aov rgba,Z,N,id -o a.exr --json a.json --threads 2
     run 0 render knot.ply $how $what --aov rgba,Z,N,id -o b.exr --json b.json --threads 1 --isa scalar --tile 16
     [[ $(hashes a.json) == "$(hashes b.json)" && -n $(hashes a.json) ]] || fail "two pictures of $how $what"

@@ -3,4 +3,10 @@
 set -euo pipefail
 source "$(dirname "$0")/../support/python.bash"
 cd "$1/tests/python"
-with_conic "$python" -W error::ResourceWarning -m unittest -q test_arrays test_commands test_judge test_runs test_shots
+modules=(test_arrays test_commands test_judge test_runs test_shots)
+if [[ $sanitizer ]]; then # it takes ten times as long, and processes begin ten times as late
+  export CONIC_CALLS=15
+else
+  modules+=(test_processes)
+fi
+with_conic "$python" -W error::ResourceWarning -m unittest -q "${modules[@]}"

@@ -1,11 +1,7 @@
 """The judge, gradients, and tests of other renderers."""
 
-import importlib.util
 import os
-import subprocess
-import sys
 import tempfile
-import textwrap
 import unittest
 
 import numpy
@@ -71,28 +67,6 @@ class Judge(unittest.TestCase):
         self.assertGreater(os.path.getsize(found.path), 120 * 4)
         self.assertEqual(found.statistics["gaussians"], 120)
         found.close()
-
-    @unittest.skipUnless(importlib.util.find_spec("pytest"), "pytest (python3-pytest) is not there")
-    def test_plugin(self):
-        with tempfile.TemporaryDirectory() as folder:
-            with open(os.path.join(folder, "test_wrong.py"), "w", encoding="utf-8") as file:
-                file.write(textwrap.dedent("""\
-                    import conic
-                    from conic.testing import assert_matches
-
-                    def test_picture():
-                        scene = conic.make("gaussians", n=50).gaussians()
-                        camera = conic.render(scene, size=(20, 20)).camera
-                        drawn = conic.render(scene, camera, profile="exact", samples=1)
-                        assert_matches(scene, camera, drawn["rgba"] * 0.9, profile="exact")
-                    """))
-            done = subprocess.run([sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-p",
-                                   "conic.pytest_plugin", "--conic-reports", "kept", "test_wrong.py"], cwd=folder,
-                                  capture_output=True, text=True, check=False)
-            self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
-            self.assertIn("- conic -", done.stdout)
-            kept = os.path.join(folder, "kept", "test_wrong.py_test_picture")
-            self.assertIn("map.png", os.listdir(kept))
 
 
 if __name__ == "__main__":

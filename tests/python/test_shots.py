@@ -1,4 +1,4 @@
-"""Shots: pictures as one value, what a scene keeps, calls within calls, and Ctrl-C."""
+"""Shots: pictures as one value, and what a scene keeps."""
 
 import copy
 import ctypes
@@ -6,11 +6,7 @@ import dataclasses
 import inspect
 import os
 import pickle
-import signal
-import subprocess
-import sys
 import tempfile
-import threading
 import unittest
 import warnings
 
@@ -25,6 +21,7 @@ from drawn_by_program import hashes
 
 SIZE = (48, 40)
 WORDS = ("--size", "48x40")
+IS_SANITIZED = "LD_PRELOAD" in os.environ  # where a start of the program takes ten times as long
 
 # What a picture may be asked for, and the same for the program.
 OPTIONS = (
@@ -61,114 +58,6 @@ OPTIONS = (
 # Of these, what is drawn of what was read for the first picture.
 OTHERWISE_READ = {"color_by", "transparency", "plain", "degree", "cutoff"}
 OF_THE_PICTURE = [options for options, _ in OPTIONS if not set(options) & OTHERWISE_READ]
-
-NESTED = """
-import conic
-scene = conic.make("sphere", n=500)
-splats = scene.splats()
-wanted = {}
-for what in (scene, splats):
-    wanted[id(what)] = conic.render(what, size=(32, 24)).hash()
-depth = [0]
-found = []
-def tell(task, done):
-    if depth[0] < 2 and len(found) < 8:
-        depth[0] += 1
-        for what in (scene, splats):
-            found.append(conic.render(what, size=(32, 24), progress=tell).hash() == wanted[id(what)])
-        conic.release()
-        depth[0] -= 1
-for what in (scene, splats):
-    found.clear()
-    assert conic.render(what, size=(32, 24), progress=tell).hash() == wanted[id(what)]
-    assert len(found) >= 4 and all(found), found
-print("all drawn")
-"""
-
-# A thread's picture waits, in what it has called, for one that another draws of the same scene.
-BESIDE = """
-import conic, threading
-scene = conic.make("sphere", n=500)
-wanted = conic.render(scene, size=(32, 24)).hash()
-found = []
-def draw():
-    found.append(conic.render(scene, size=(32, 24)).hash() == wanted)
-def tell(task, done):
-    if not found:
-        other = threading.Thread(target=draw)
-        other.start()
-        other.join()
-conic.render(scene, size=(32, 24), progress=tell)
-assert found == [True], found
-scene.close()
-print("all drawn")
-"""
-
-# Signals itself, and says how long its processors worked until the call came back: what else the machine does hardly
-# counts.
-INTERRUPTED = """
-import conic, os, signal, sys, threading, time
-work = {work!r}
-scene = conic.open({path!r})
-at = []
-def shoot():
-    time.sleep({wait})
-    at.append(time.process_time())
-    os.kill(os.getpid(), signal.SIGINT)
-threading.Thread(target=shoot, daemon=True).start()
-try:
-    while True:
-        if work == "draw":
-            conic.render(scene, size=(3000, 3000), accumulate=1000)
-        elif work == "light":
-            conic.render(scene, size=(900, 900), ao=65536)
-        elif work == "read":
-            conic.render(conic.open({path!r}), size=(16, 16), as_="points")
-        else:
-            conic.render(conic.Splats(scene.splats().position), size=(16, 16))
-except KeyboardInterrupt:
-    print("interrupted", time.process_time() - at[0])
-"""
-
-# Ctrl-C comes while what a scene has kept is given back.
-FORGETTING = """
-import conic, os, signal, time
-from conic._library import Kept
-destroy = Kept._destroy
-def interrupted(kept):
-    os.kill(os.getpid(), signal.SIGINT)
-    destroy(kept)
-scene = conic.open({path!r})
-conic.render(scene, size=(16, 16))
-Kept._destroy = interrupted
-try:
-    del scene
-    time.sleep(30)
-except KeyboardInterrupt:
-    Kept._destroy = destroy
-    print("interrupted")
-"""
-
-# Ctrl-C ends the main thread, and with it what others draw.
-OTHERS = """
-import conic, os, signal, threading, time
-scene = conic.make("sphere", n=2000)
-def draw():
-    try:
-        conic.render(scene, size=(3000, 3000), accumulate=100000)
-    except conic.Cancelled:
-        os.write(1, b"cancelled")
-thread = threading.Thread(target=draw)
-thread.start()
-time.sleep(1)
-threading.Timer(0.2, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
-{wait}
-"""
-
-
-def run(program, seconds=60):
-    return subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=seconds, check=False)
-
 
 class Shots(unittest.TestCase):
 
@@ -255,7 +144,7 @@ class Shots(unittest.TestCase):
                 self.assertEqual(hashes(ours), told["hash"])
 
     def test_files_are_the_program_s(self):
-        for i, (options, words) in enumerate(OPTIONS):
+        for i, (options, words) in enumerate(OPTIONS[::1 + 3 * IS_SANITIZED]):
             with self.subTest(options=options):
                 picture = conic.render(self.scene, size=SIZE, **options)
                 self.assert_is_the_program_s(f"o{i}", picture.shot, self.scene.path, *WORDS, *words)
@@ -406,43 +295,6 @@ class Shots(unittest.TestCase):
         picture = conic.render(scene, size=SIZE, profile="gsplat-1.6")
         self.assertEqual(conic.judge(scene, picture.camera, picture["rgba"], profile="gsplat-1.6")["verdict"], "right")
         self.assertTrue(conic.verify(scene, picture.camera, profile="gsplat-1.6")["pass"])
-
-    def test_calls_within_calls(self):
-        for program in (NESTED, BESIDE):
-            done = run(program)
-            self.assertEqual((done.stdout, done.stderr), ("all drawn\n", ""))
-
-    def test_interrupts(self):
-        splats = conic.make("sphere", self.path("large.ply"), n=400000)
-        for work, wait in (("draw", 1.0), ("light", 1.0), ("read", 0.7), ("estimate", 1.5)):
-            with self.subTest(work=work):
-                done = run(INTERRUPTED.format(work=work, path=splats.path, wait=wait))
-                self.assertEqual(done.stdout.split()[:1], ["interrupted"], done.stderr)
-                self.assertLess(float(done.stdout.split()[1]), 0.6)
-        for wait in ("time.sleep(60)", "thread.join()"):
-            with self.subTest(wait=wait):
-                done = run(OTHERS.format(wait=wait))
-                self.assertEqual(done.returncode, -signal.SIGINT, done.stderr)
-                self.assertIn("KeyboardInterrupt", done.stderr)
-                if "join" not in wait:  # whose end Python 3.11 takes for the thread's
-                    self.assertEqual(done.stdout, "cancelled")
-
-    def test_an_interrupt_of_forgetting(self):
-        done = run(FORGETTING.format(path=self.scene.path), 25)
-        self.assertEqual((done.stdout, done.stderr), ("interrupted\n", ""))
-
-    def test_example(self):
-        example = os.path.join(os.path.dirname(__file__), "../../python/examples/final_picture.py")
-        done = subprocess.run([sys.executable, example, self.scene.path, self.folder.name], capture_output=True,
-                              text=True, check=True)
-        wanted = hashes(self.scene.path, "--size", "200x200", "--projection", "fisheye", "--fov", "150", "--ao", "8",
-                        "--shadow", "--accumulate", "8")
-        self.assertEqual(done.stdout.strip(), wanted["rgba"])
-        conic.render(self.scene, size=(1200, 900), samples=1, output=self.path("whole.exr"))
-        with open(self.path("strips.exr"), "rb") as strips, open(self.path("whole.exr"), "rb") as whole:
-            self.assertEqual(strips.read(), whole.read())
-        with self.assertRaisesRegex(conic.ArgumentError, "in_memory"):
-            conic.render(self.scene, in_memory=False)
 
     def test_signatures(self):
         parameters = inspect.signature(conic.render).parameters

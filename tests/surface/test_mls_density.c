@@ -3,7 +3,7 @@
 #include "tests/support/sanitized.h"
 #include "tests/support/surface_shapes.h"
 
-enum { N_SAMPLES = IS_SANITIZED ? 1200 : 6000 };
+enum { N_SAMPLES = IS_SANITIZED ? 3000 : 6000 };
 
 static double greatest_distance(shape s, const conic_splats *splats) {
   double greatest = 0.0;
@@ -85,7 +85,7 @@ static void check_thin_error(conic_context *context) {
   conic_thin_options_init(&wanted);
   size_t before = N_SAMPLES;
   conic_surface *surface = shape_surface(context, &samples, &options);
-  for (wanted.max_error = 3e-4; wanted.max_error < (IS_SANITIZED ? 1e-3 : 4e-3); wanted.max_error *= 10.0) {
+  for (wanted.max_error = IS_SANITIZED ? 3e-3 : 3e-4; wanted.max_error < 4e-3; wanted.max_error *= 10.0) {
     CHECK_OK(conic_surface_thin(surface, &wanted, &thinned, &report));
     double error = hausdorff(surface, &thinned, &options, context);
     printf("within %.0e: %zu left, Hausdorff distance %.2g\n", wanted.max_error, thinned.count, error);

@@ -363,20 +363,21 @@ static void check_scan(conic_context *context, const char *source_folder) {
 
 /* Clusters: what they change is bounded by their size; with none allowed, nothing. */
 static void check_clusters(conic_context *context) {
-  conic_splats samples = shape_sample(context, SHAPE_TORUS, IS_SANITIZED ? 8000 : 20000, 0.0, 5);
+  conic_splats samples = shape_sample(context, SHAPE_TORUS, 20000, 0.0, 5);
   conic_surface_options options;
   conic_surface_point *exact, *summed;
   conic_surface_options_init(&options);
   options.h = 12.0 * shape_spacing(SHAPE_TORUS, samples.count);
   options.degree = 2;
   conic_surface *surface = shape_surface(context, &samples, &options);
-  size_t n = shape_project(surface, &samples, 100, &exact);
+  const size_t step = IS_SANITIZED ? 500 : 100;
+  size_t n = shape_project(surface, &samples, step, &exact);
   conic_surface_destroy(surface);
   double before = 0.0;
   for (options.cluster = 0.2; options.cluster < 0.45; options.cluster += 0.1) {
     double sum2 = 0.0, neighbours = 0.0, all = 0.0;
     surface = shape_surface(context, &samples, &options);
-    CHECK(shape_project(surface, &samples, 100, &summed) == n);
+    CHECK(shape_project(surface, &samples, step, &summed) == n);
     for (size_t i = 0; i < n; i++) {
       for (int axis = 0; axis < 3; axis++)
         sum2 +=

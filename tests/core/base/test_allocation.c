@@ -131,7 +131,7 @@ static conic_status through_octree(conic_context *context, const conic_splats *s
   return status;
 }
 
-/* The whole way for one input. */
+/* The whole way for one input; that of the first goes on to files, which the others would write alike. */
 static conic_status run(const char *input, int threads) {
   conic_context *context;
   conic_model model;
@@ -152,9 +152,10 @@ static conic_status run(const char *input, int threads) {
     status = conic_camera_read(context, files_path("camera.json"), &camera);
   if (status == CONIC_OK)
     status = draw(context, &model.points, &camera, &image);
-  if (status == CONIC_OK)
+  const int is_first = strcmp(input, "points.ply") == 0;
+  if (status == CONIC_OK && is_first)
     status = write_all(context, &model.points, &image);
-  for (int quantize = 0; quantize < 2 && status == CONIC_OK; quantize++)
+  for (int quantize = 0; quantize < 2 && is_first && status == CONIC_OK; quantize++)
     status = through_octree(context, &model.points, &camera, quantize);
   conic_image_release(context, &image);
   conic_model_release(context, &model);
