@@ -116,17 +116,17 @@ printf '%s\n' '0 0 0' '1e30 0 0' '0 1e30 0' > far.xyz
 for i in {1..60}; do echo "$i 0 0"; done > wire.xyz
 printf '%s\n' '0 0 0' '1 0 0' '0 1 0' '1 1 0' '1 1 0' 'nan 0 0' > odd.xyz
 
-write make make make knot -n 50k -o knot.ply
-write prepare prepare prepare knot.ply -o thin.ply --count 20000 --seed 1
+write make make make knot -n 12k -o knot.ply
+write prepare prepare prepare knot.ply -o thin.ply --count 8000 --seed 1
 write prepare-dots prepare prepare wire.xyz -o wire.ply
 write octree octree octree knot.ply -o knot.cot
 write hybrid hybrid hybrid tent.obj -o tent.chy --largest 1 --phase1 -0.1 --phase2 0.1 --most-error 0
 write mls-project mls_project mls project knot.ply -o clean.ply
 write mls-spheres mls_project mls project thin.ply -o clean.ply --type apss
-write mls-thin mls_thin mls thin thin.ply -o thinner.ply --count 10k
+write mls-thin mls_thin mls thin thin.ply -o thinner.ply --count 4k
 write mls-densify mls_densify mls densify thinner.ply -o dense.ply --spacing 0.7x
 write csg csg csg knot.ply clean.ply -o solid.ply --union
-write render render render knot.ply -o knot.exr --aov all --size 512x512
+write render render render knot.ply -o knot.exr --aov all --size 256x256
 write render-accumulated render render knot.ply -o accumulated.exr --accumulate 4 --aperture 0.1 --size 64x64
 write render-kept render render knot.ply --turntable 2 -o turn.exr --resumable --resume turn.exr --size 32x32
 if [[ -x $3/bin/conic-mpi ]] && command -v mpirun > /dev/null; then
@@ -134,7 +134,7 @@ if [[ -x $3/bin/conic-mpi ]] && command -v mpirun > /dev/null; then
     --plain -o team.exr --aov all --size 64x64 --json runs/render-team.json < /dev/null || fail "two ranks cannot draw"
   echo render > runs/render-team.definition
 fi
-write render-octree render_octree render knot.cot -o lod.exr --error 2 --size 512x512
+write render-octree render_octree render knot.cot -o lod.exr --error 2 --size 256x256
 write render-mesh render_mesh render triangle.obj --as mesh --size 256x256 -o triangle.exr
 write render-patches render_patches render thin.ply -o patches.exr --method patch --zoom 4 --size 256x256
 write render-hybrid render_hybrid render tent.chy -o tent.exr
@@ -206,10 +206,10 @@ write explain-leaf explain explain knot.cot --size 2048x2048 --error 0.5 --splat
 write explain-hybrid explain explain tent.chy --size 64x48 --pixel 30,25 --only triangles
 write explain-mixed explain explain tent.chy --size 64x48 --pixel 14,24 --splat 9
 write chart chart chart knot.cot -o chart --quick --over samples=1:2 --time 9
-write bench-old bench bench --scenes sphere-20k --size 256x256 --isa scalar --threads 1 --repeat 5
+write bench-old bench bench --scenes sphere-2k --size 128x128 --isa scalar --threads 1 --repeat 2
 cp runs/bench-old.json old.json
-write bench bench bench --scenes sphere-20k --size 256x256 --isa scalar --threads 1 --repeat 5 --floor --compare old.json
-write bench-simulated bench bench --scenes sphere-20k --size 256x256 --threads 1 --repeat 3 --simulate-threads 2,40
+write bench bench bench --scenes sphere-2k --size 128x128 --isa scalar --threads 1 --repeat 2 --floor --compare old.json
+write bench-simulated bench bench --scenes sphere-2k --size 128x128 --threads 1 --repeat 3 --simulate-threads 2,40
 write bench-chosen bench bench knot.cot --error 2 --size 64x48 --threads 1 --repeat 1
 write info info_model info knot.ply --check
 write info-mesh info_model info triangle.obj
@@ -256,7 +256,7 @@ if [[ $has_zstd -eq 1 ]]; then
   write merge layer merge knot.lpc colored.lpc -o merged.lpc
   write layer-kept layer layer knot.ply -o kept.lpc --keep x --up z --resumable
   write info-kept info_layers info kept.lpc
-  write render-layers render_layers render knot.lpc -o layers.exr --error 4 --size 512x512
+  write render-layers render_layers render knot.lpc -o layers.exr --error 4 --size 256x256
   write render-progressive render_layers render knot.lpc -o layers.exr --error 4 --size 64x64 --progressive pictures
   write info-layers info_layers info knot.lpc --check
 else

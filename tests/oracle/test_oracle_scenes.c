@@ -165,7 +165,7 @@ static void test_frontal_wall(fixture *f) {
   fixture_camera(f, 112, 84, 77.0);
   f->camera.cam_from_world[2][3] = 1.3;
   fixture_scene(f, CONIC_SCENE_PLANE, 4000);
-  for (int i = 0; i < 6; i++) {
+  for (int i = 0; i < 6; i += 2) {
     double tilt = i ? 3e-8 * (double)(1 << (2 * i)) : 0.0;
     f->camera.cam_from_world[1][2] = tilt;
     f->camera.cam_from_world[2][1] = -tilt;

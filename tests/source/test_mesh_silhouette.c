@@ -118,7 +118,7 @@ static void draw(fixture *f, conic_source *source, const conic_camera *camera, i
   conic_source_view_init(&view);
   view.only_kind = only_kind;
   conic_image_release(f->context, &f->image);
-  CHECK_OK(conic_image_allocate(f->context, camera->width, camera->height, ALL_PLANES, &f->image));
+  CHECK_OK(conic_image_allocate(f->context, camera->width, camera->height, 1u << CONIC_PLANE_ID, &f->image));
   CHECK_OK(conic_source_draw(source, f->renderer, camera, &f->options, &view, &f->image, &f->statistics));
 }
 

@@ -102,13 +102,13 @@ static double past_outline_px(const conic_image *a, const conic_image *b) {
   return farthest / FINE;
 }
 
-/* The farthest that a drawn place is from the mesh, in pixels at its depth. Every third sample is looked at. */
+/* The farthest that a drawn place is from the mesh, in pixels at its depth. Every fifth sample is looked at. */
 static double off_mesh_px(const comparison *c) {
   const float *depths = c->image.planes[CONIC_PLANE_Z];
   const conic_camera *camera = &c->fine;
   double farthest_px = 0.0;
-  for (int y = 0; y < WIDE; y += 3)
-    for (int x = 0; x < WIDE; x += 3) {
+  for (int y = 0; y < WIDE; y += 5)
+    for (int x = 0; x < WIDE; x += 5) {
       double z = (double)depths[y * WIDE + x], at[3], unit = z / c->camera.fx;
       if (z == 0.0)
         continue;

@@ -147,7 +147,7 @@ static void test_goes(conic_context *context) {
                   late[] = {{2, "write", 0.0}, {3, NULL, 0.0}}, crown[] = {{2, "build", 1.0}, {1, NULL, 0.0}};
   const char *whole = files_path("whole.lpc");
   conic_splats splats;
-  layers_scene(context, CONIC_SCENE_KNOT, 5000, 0.0, &splats);
+  layers_scene(context, CONIC_SCENE_KNOT, 8000, 0.0, &splats);
   enlarge_along_x(&splats);
   kept_case c = case_of(context, &splats, whole);
   check_goes(whole, &c, half);
@@ -202,7 +202,7 @@ static void test_damaged_branches(conic_context *context) {
   char folder[FOLDER_ROOM + 128], file[FOLDER_ROOM + 512], list[FOLDER_ROOM + 512];
   const char *whole = files_path("whole.lpc");
   conic_splats splats;
-  layers_scene(context, CONIC_SCENE_KNOT, 5000, 0.0, &splats);
+  layers_scene(context, CONIC_SCENE_KNOT, 8000, 0.0, &splats);
   kept_case c = case_of(context, &splats, whole);
   snprintf(folder, sizeof folder, "%s.branches", c.path);
   take_go(&c, alone, 1, 0);

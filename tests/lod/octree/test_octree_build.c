@@ -169,7 +169,7 @@ static void test_check(void) {
 /* One thread and five give the same bytes. */
 static void test_threads(void) {
   fixture f = fixture_open(1), g = fixture_open(5);
-  fixture_scene(&f, CONIC_SCENE_KNOT, 120000);
+  fixture_scene(&f, CONIC_SCENE_KNOT, 60000);
   for (int quantize = IS_SANITIZED; quantize < 2; quantize++) {
     conic_octree *a = octree_build(f.context, &f.splats, quantize), *b = octree_build(g.context, &f.splats, quantize);
     CHECK(a->n_nodes == b->n_nodes && a->splat_length == b->splat_length && a->position_error == b->position_error);
@@ -293,7 +293,7 @@ int main(int argc, char **argv) {
   test_scene(CONIC_SCENE_SPHERE, 2000);
   test_scene(CONIC_SCENE_GYROID, 3000);
   if (!IS_SANITIZED)
-    test_scene(CONIC_SCENE_TERRAIN, 70000);
+    test_scene(CONIC_SCENE_TERRAIN, 30000);
   test_check();
   test_threads();
   test_few();

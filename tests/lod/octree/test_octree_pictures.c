@@ -238,8 +238,6 @@ int main(int argc, char **argv) {
   fixture_scene(&f, CONIC_SCENE_KNOT, 150000);
   test_sides(&f, "knot");
   test_zoom(&f, "knot");
-  fixture_scene(&f, CONIC_SCENE_SPHERE, 100000);
-  test_sides(&f, "sphere");
   if (octree_read_scan(&f, source_folder, "bunny.obj"))
     test_sides(&f, "bunny");
   if (octree_read_scan(&f, source_folder, "lion.ply")) {
