@@ -10,7 +10,7 @@ if ! "$conic" --version | grep -q '^In this build:.*OpenEXR'; then
   echo "skipped: planes are compared in EXR files, which this build does not write"
   exit 77
 fi
-"$conic" make knot -n 1000 -o knot.ply
+"$conic" make knot -n 3000 -o knot.ply
 "$conic" make sphere -n 4000 -o sphere.ply
 camera() { # NAME, MEMBERS …: from the middle of the scene, or as said
   printf '{%s, "world_to_camera": [[1,0,0,0],[0,1,0,0],[0,0,1,%s],[0,0,0,1]]}' "$2" "${3:-0}" > "$1.json"

@@ -5,6 +5,7 @@
 #include "core/files/sha256.h"
 #include "lod/layers/build/layers_team.h"
 #include "tests/support/layers_fixture.h"
+#include "tests/support/sanitized.h"
 #include "tests/support/thread_team.h"
 
 static char key[CONIC_SHA256_ROOM] = "0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef";
@@ -147,14 +148,16 @@ static void test_goes(conic_context *context) {
                   late[] = {{2, "write", 0.0}, {3, NULL, 0.0}}, crown[] = {{2, "build", 1.0}, {1, NULL, 0.0}};
   const char *whole = files_path("whole.lpc");
   conic_splats splats;
-  layers_scene(context, CONIC_SCENE_KNOT, 8000, 0.0, &splats);
+  layers_scene(context, CONIC_SCENE_KNOT, 12000, 0.0, &splats);
   enlarge_along_x(&splats);
   kept_case c = case_of(context, &splats, whole);
-  check_goes(whole, &c, half);
-  check_goes(whole, &c, ranks);
+  if (!IS_SANITIZED) {
+    check_goes(whole, &c, half);
+    check_goes(whole, &c, ranks);
+    check_goes(whole, &c, late);
+    check_goes(whole, &c, crown);
+  }
   check_goes(whole, &c, many);
-  check_goes(whole, &c, late);
-  check_goes(whole, &c, crown);
   c.options.memory_bytes = 1 << 16; /* branches wait in files */
   check_goes(whole, &c, ranks);
   c.options.memory_bytes = UINT64_C(1) << 30;
@@ -169,10 +172,10 @@ static void test_points_that_coincide(conic_context *context) {
   static const go goes[] = {{1, "build", 0.4}, {3, "build", 0.5}, {2, NULL, 0.0}};
   const char *whole = files_path("whole.lpc");
   conic_splats splats;
-  layers_scene(context, CONIC_SCENE_SPHERE, 8000, 0.0, &splats);
+  layers_scene(context, CONIC_SCENE_SPHERE, 20000, 0.0, &splats);
   conic_splats points = {.count = splats.count};
   memcpy(points.position, splats.position, sizeof points.position);
-  for (size_t i = 3000; i < 5000; i++)
+  for (size_t i = 8000; i < 12000; i++)
     for (int axis = 0; axis < 3; axis++)
       points.position[axis][i] = 0.5f;
   points.position[0][777] = 40.0f;
@@ -202,7 +205,7 @@ static void test_damaged_branches(conic_context *context) {
   char folder[FOLDER_ROOM + 128], file[FOLDER_ROOM + 512], list[FOLDER_ROOM + 512];
   const char *whole = files_path("whole.lpc");
   conic_splats splats;
-  layers_scene(context, CONIC_SCENE_KNOT, 8000, 0.0, &splats);
+  layers_scene(context, CONIC_SCENE_KNOT, 12000, 0.0, &splats);
   kept_case c = case_of(context, &splats, whole);
   snprintf(folder, sizeof folder, "%s.branches", c.path);
   take_go(&c, alone, 1, 0);
