@@ -45,13 +45,11 @@ if [[ -n $numpy ]]; then
   shows 'L1-solid' 'F(0.99)' 'F(0.999)'
   shows 'L1-solid' 'np.maximum(np.stack(channels, 1), 0.0)' 'np.stack(channels, 1)'
   shows 'L1-harmonics L2-off-center L2-background' '{c * n_rest + k}' '{3 * k + c}'
-  if [[ ! $sanitized ]]; then
-    shows 'L2-overlap L2-faint L2-off-center L2-background' 'np.argsort(z.astype(F), kind="stable")' 'range(len(z))'
-    shows 'L2-overlap' 'np.argsort(z' 'np.argsort((p * p).sum(1)'
-    shows 'L2-off-center' '-fy * slope_y' '-fx * slope_y'
-    shows 'L2-background' 'T[..., None] * np' '0 * T[..., None] * np'
-    shows 'L2-faint' 'F(1e-4)' 'F(-1)'
-  fi
+  shows 'L2-overlap L2-faint L2-off-center L2-background' 'np.argsort(z.astype(F), kind="stable")' 'range(len(z))'
+  shows 'L2-overlap' 'np.argsort(z' 'np.argsort((p * p).sum(1)'
+  shows 'L2-off-center' '-fy * slope_y' '-fx * slope_y'
+  shows 'L2-background' 'T[..., None] * np' '0 * T[..., None] * np'
+  shows 'L2-faint' 'F(1e-4)' 'F(-1)'
 else
   echo "not drawn by the numpy renderer: python3-numpy is not installed"
 fi

@@ -5,7 +5,7 @@
 #include "tests/support/hybrid_fixture.h"
 #include "tests/support/triangle_fixture.h"
 
-enum { WIDTH = 142, HEIGHT = 98, N_PASSES = 2 };
+enum { WIDTH = 190, HEIGHT = 130, N_PASSES = 2 };
 
 /* What is drawn. */
 enum { MESH, MIXED, BUILT, JOINED, SURFELS, N_SCENES };
