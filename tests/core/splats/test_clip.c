@@ -297,7 +297,7 @@ static void drop_clips(fixture *f) {
 static void test_isas(fixture *f, conic_method method, int passes) {
   uint64_t state = 23, hashes[CONIC_N_DRAWN_PLANES] = {0};
   fill_wild(f, &state, 3000);
-  fixture_camera(f, 203, 151, 120.0);
+  fixture_camera(f, 131, 97, 77.0);
   f->options.method = method;
   f->options.passes = passes;
   for (int isa = CONIC_ISA_SCALAR; isa < CONIC_N_ISAS; isa++) {
