@@ -128,7 +128,8 @@ static void test_hand_made(conic_context *context) {
   conic_model_release(context, &model);
   static const char *const wrong[][2] = {
       {AXES_HEADER "0 0 0 1 0 0 0 1 0 0 4 1 2 3 4\n1 0 0 1 0 0 0 1 0 0 0\n", "neither 0 nor 3 nor 6 values (line 16)"},
-      {AXES_HEADER "0 0 0 1 0 0 0 1 0 3 1 2 3 3 1 2 3\n1 0 0 1 0 0 0 1 0 0 0\n", "both clip_and and clip_or (line 16)"}};
+      {AXES_HEADER "0 0 0 1 0 0 0 1 0 3 1 2 3 3 1 2 3\n1 0 0 1 0 0 0 1 0 0 0\n",
+       "both clip_and and clip_or (line 16)"}};
   for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
     const char *path = files_write_bytes("b.ply", wrong[i][0], strlen(wrong[i][0]));
     CHECK(conic_model_read(context, path, NULL, &model) == CONIC_ERROR_INPUT);
