@@ -51,7 +51,8 @@ static conic_status resolve_lengths(cli_session *session, cli_render_job *job) {
   conic_status status = CONIC_OK;
   int has_spacings = job->epsilon.is_in_spacings || job->near_z.is_in_spacings || lens->is_in_spacings;
   int is_known = conic_source_measure(job->source)->spacing > 0.0;
-  if (has_spacings && !is_known && (cli_lod_is_wanted(job) || job->abilities & CONIC_SOURCE_CLUSTERS)) {
+  int has_parts = job->abilities && (cli_lod_is_wanted(job) || job->abilities & CONIC_SOURCE_CLUSTERS);
+  if (has_spacings && !is_known && has_parts) {
     cli_error(CLI_USAGE,
               "%s: lengths in spacings need every splat; give world units with --error, --budget or a hybrid",
               session->command);

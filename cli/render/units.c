@@ -70,7 +70,7 @@ static conic_status tell_together(const cli_session *session, conic_status statu
 conic_status cli_units_open_source(const cli_session *session, cli_render_job *job) {
   size_t n = (size_t)job->n_inputs;
   int is_parted = job->units == CONIC_UNITS_WINDOWS && !session->host && conic_renderer_has_parts(job->renderer) &&
-                  !looks_at_all(job);
+                  !looks_at_all(job) && !cli_lod_is_wanted(job);
   if (!is_parted)
     return conic_source_open(session->context, job->inputs, n, &job->opening, &job->source);
   return tell_together(session, conic_source_open_shared(session->context, job->executor->team, job->inputs, n,

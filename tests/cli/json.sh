@@ -135,6 +135,7 @@ if [[ -x $3/bin/conic-mpi ]] && command -v mpirun > /dev/null; then
   echo render > runs/render-team.definition
 fi
 write render-octree render_octree render knot.cot -o lod.exr --error 2 --size 256x256
+write render-lean render render knot.ply -o lean.exr --error 2 --size 64x48
 write render-mesh render_mesh render triangle.obj --as mesh --size 256x256 -o triangle.exr
 write render-patches render_patches render thin.ply -o patches.exr --method patch --zoom 4 --size 256x256
 write render-hybrid render_hybrid render tent.chy -o tent.exr
