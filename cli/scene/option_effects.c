@@ -52,6 +52,8 @@ static const struct {
      "--deep lists the splats of the input, not those that --error and --budget choose"},
     {F(DEEP) | F(LEVELS), 0, 0, "--deep lists the splats of inputs that are read whole, not of an .lpc"},
     {F(MATTES) | F(LEVELS), 0, 0, "cryptomatte names what is read whole, not an .lpc"},
+    {F(MATTES), CLI_CHOSEN, F(HYBRID) | F(NODES),
+     "cryptomatte names what the inputs have, not what --error and --budget join"},
     {F(MATTES), 0, F(EXR), "cryptomatte goes into an .exr; give -o OUT.exr"},
     {F(PROGRESSIVE), F(TURNTABLE) | F(REPEATED), 0,
      "--progressive writes the pictures of one frame, not of a turntable or of --repeat"},
@@ -291,7 +293,7 @@ static void note_parts(cli_render_job *job, const cli_scene_words *words) {
 
 /* What to do where a source is none of which an option is. */
 static const char *find_remedy(const cli_effects_job *own, cli_facts on) {
-  if (own->certain & F(COMPOSITED) && on & (F(SPLATS) | F(RAW) | F(ALPHA)))
+  if (own->certain & F(COMPOSITED) && on & (F(SPLATS) | F(RAW) | F(ALPHA) | F(CHOOSES)))
     return "; --profile surface draws the scene as splats";
   if (own->certain & F(GAUSSIANS) && on & F(COMPOSITED))
     return "; the scene is drawn as splats";
