@@ -156,7 +156,7 @@ static conic_status choose_nodes(lean_choosing *c, double error_px, uint64_t bud
   conic_status status = need_octree(c);
   if (status == CONIC_OK)
     status = conic_octree_select(lean->octree, c->camera, c->render, &options, &lean->nodes);
-  if (status != CONIC_OK || !lean->nodes.n_inner)
+  if (status != CONIC_OK || (!budget && !lean->nodes.n_inner))
     return status;
   c->drawing.splats = &lean->nodes.splats;
   c->ids = lean->nodes.ids;
@@ -184,7 +184,7 @@ static conic_status choose_levels(lean_choosing *c, double error_px, uint64_t bu
     return status;
   status = conic_hybrid_select(lean->levels, c->camera, c->render, &view, &lean->triangles);
   const conic_hybrid_selection *chosen = &lean->triangles;
-  if (status != CONIC_OK || !(chosen->error_px > 0.0) || (!budget && !(share * chosen->error_px <= error_px)))
+  if (status != CONIC_OK || (!budget && !(chosen->error_px > 0.0 && share * chosen->error_px <= error_px)))
     return status;
   c->drawing.triangles = &lean->triangles.triangles;
   c->n_culled += chosen->n_culled;

@@ -260,7 +260,8 @@ static void note_parts(cli_render_job *job, const cli_scene_words *words) {
        "quality draft",
        {.apart = F(MAP), .why = "a map has one sample a pixel as it is"}},
       {job->is_plain && job->top.is_wanted, "plain", {.on = F(FACES) | F(RAW) | F(LIT)}},
-      {words->is_colored_whole && words->as != CONIC_AS_HYBRID,
+      {words->is_colored_whole && words->as != CONIC_AS_HYBRID && job->n_inputs == 1 &&
+           conic_source_kind_of_file(job->inputs[0]),
        "color-by",
        {.apart = CLI_CHOSEN,
         .why = "it looks at all that there is; conic octree and conic layer take it, too, and keep the colours"}},

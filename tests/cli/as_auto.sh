@@ -33,7 +33,7 @@ drawn 12 '' tent.obj --as points
 drawn 12 '' tent.obj --plain
 run_as_typed 2 render tent.obj -o a.pfm --smooth --crease 20
 run_as_typed 2 render tent.obj -o a.pfm --as points --crease 20
-run_as_typed 2 render tent.obj -o a.pfm --error 1
+run_as_typed 0 render tent.obj -o a.pfm --error 1
 run_as_typed 0 verify beside.obj --size 48x48
 run_as_typed 0 explain beside.obj --size 64x48 --pixel 20,25
 run_as_typed 0 render tent.obj --method patch -o a.pfm --size 64x64

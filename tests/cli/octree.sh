@@ -123,16 +123,21 @@ run 0 octree cube.ply -o cube.cot --quantize
 run 0 info cube.cot --check
 run 0 render cube.cot -o cube.pfm --size 64x64 --error 1
 
+# Plain files, and several, are joined in memory.
+run 0 render knot.ply -o x.pfm --size 64x64 --error 1 --json lean.json
+grep -q '"splats": "cells"' lean.json || fail "an error of a plain file"
+run 0 render knot.cot knot.ply -o x.pfm --size 64x64 --budget 500 --json lean.json
+grep -q '"splats": "octree"' lean.json || fail "a budget of two files"
+run 0 explain knot.ply --size 64x64 --error 1 --pixel 32,32
+rm -f x.pfm
+
 # Wrong usage, wrong inputs.
 run 2 render knot.cot -o x.pfm --error 1 --budget 5
-run 2 render knot.ply -o x.pfm --error 1
-run 2 render knot.cot knot.ply -o x.pfm --error 1
 run 2 render knot.cot -o x.pfm --error -1
 run 2 render knot.cot -o x.pfm --budget 0
 run 2 render knot.cot --deep x.exr --error 1
 run 2 verify knot.cot --error 1 --budget 5
 run 3 render missing.cot -o x.pfm --error 1
-run 2 explain knot.ply --error 1 --pixel 1,1
 run 2 render knot.cot -o x.pfm --error 1 --cutoff 3
 run 2 octree knot.ply
 run 2 octree -o x.cot
