@@ -28,8 +28,9 @@ typedef struct conic_lean_drawing {
 conic_status conic_lean_choose(conic_source *source, const conic_drawing *all, const conic_splats *unturned,
                                const conic_camera *camera, const conic_render_options *render,
                                conic_lean_drawing *lean);
-/* How many of the splats that an eighth of the picture shows, about its middle, there are for one that an error of a
- * pixel leaves, after a picture of all; 1 where that is not known. It takes as long as a look at each splat. */
+/* How many of the splats that the middle of the picture shows, an eighth as wide and high, there are for one that an
+ * error of a pixel leaves, after a picture of all; 1 where that is not known. It takes as long as a look at each splat.
+ */
 double conic_lean_saving(const conic_source *source, const conic_camera *camera, const conic_render_options *render);
 
 void conic_lean_name(const conic_lean_drawing *lean, const conic_source_choice *choice, conic_image *image);

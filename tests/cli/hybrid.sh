@@ -210,6 +210,7 @@ run 2 render hill.chy -o x.pfm --clusters
 run 2 render hill.obj -o x.pfm --clusters c.png
 run 0 render hill.obj --as mesh -o x.pfm --budget 100 --json lean.json
 grep -q '"triangles": "levels"' lean.json || fail "a mesh's budget"
+rm -f x.pfm
 run 2 verify hill.chy hill.obj
 run 2 verify hill.chy --aov cluster
 run 2 verify hill.chy --error 1 --budget 1000
