@@ -269,8 +269,8 @@ static const kind kinds[] = {{{CONIC_KERNEL_HAT, 1.0f, 0, 0, 0}, {0.045, 0.07, 0
                              {{CONIC_KERNEL_CONFETTI, 1.5f, 4.0f, 1.5f, 5}, {0.045, 0.05, 0.5, 0.03, 0.11, 0.026}},
                              {{CONIC_KERNEL_CONFETTI, 3.0f, 4.0f, 3.0f, 5}, {0.035, 0.045, 0.45, 0.033, 0.11, 0.026}},
                              {{CONIC_KERNEL_BOX, 1.0f, 0, 0, 0}, {0.1, 0.1, 0.1, 0.035, 0.04, 0.45}},
-                             {{CONIC_KERNEL_BOX, 1.5f, 0, 0, 0}, {0.1, 0.1, 0.1, 0.07, 0.07, 0.2}},
-                             {{CONIC_KERNEL_BOX, 3.0f, 0, 0, 0}, {0.18, 0.18, 0.18, 0.07, 0.14, 0.4}}};
+                             {{CONIC_KERNEL_BOX, 1.5f, 0, 0, 0}, {0.1, 0.1, 0.1, 0.07, 0.07, 0.45}},
+                             {{CONIC_KERNEL_BOX, 3.0f, 0, 0, 0}, {0.18, 0.18, 0.18, 0.07, 0.14, 0.5}}};
 
 static const double least_peak = 0.125;
 
