@@ -87,6 +87,7 @@ CASES = {
     "--shade": [["--shade", "lambert"], ["--shade", "none"]],
     "--light": [["--light", "1,0,0"], ["--light", "none"], ["--light", "lamp:1,1,1"]],
     "--sky": [["--sky", "1,0,0"]],
+    "--reflect": [["--reflect", "0.5", "--sky", "texture.png", "--ao", "2"], ["--reflect", "0.5"]],
     "--background": [["--background", "1,0,0"], ["--background", "1,0,0:0,1,0"]],
     "--exposure": [["--exposure", "2"], ["--exposure", "auto"]],
     "--aov": [["--aov", "rgba,Z," + plane] for plane in ("N", "albedo", "weight", "count", "id", "P", "cluster", "T", "medianZ",
