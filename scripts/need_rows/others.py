@@ -122,22 +122,28 @@ def levels(built, points, look, error_px):
     return len(drawn), covering(points, drawn, look)
 
 
-def qsplat(discs, look, error_px):
-    """Spheres in a tree that halves boxes, down to the first that is seen under no more than the error."""
-    count, stack = 0, [discs]
+def qsplat(discs, look, sizes, error_px):
+    """Spheres in a tree that halves boxes, down to the first that is seen under no more than the error: how many, for
+    pictures of each size."""
+    counts, stack = dict.fromkeys(sizes, 0), [(discs, sizes)]
     while stack:
-        some = stack.pop()
-        low, high = ([pick(d[0][k] for d in some) for k in range(3)] for pick in (min, max))
+        some, left = stack.pop()
+        columns = [[d[0][k] for d in some] for k in range(3)]
+        low, high = list(map(min, columns)), list(map(max, columns))
         middle = tuple(0.5 * (low[k] + high[k]) for k in range(3))
-        radius = max(math.dist(d[0], middle) + math.hypot(*max(d[1], d[2], key=lambda v: math.hypot(*v)))
-                     for d in some) if len(some) < 4096 else math.dist(low, high) / 2.0
+        radius = math.dist(low, high) / 2.0
+        if len(some) < 4096:
+            radius = max(math.dist(d[0], middle) + max(math.hypot(*d[1]), math.hypot(*d[2])) for d in some)
         depth = look.seen(middle)[2] - radius
-        if len(some) == 1 or (depth > 0.0 and 2.0 * radius * look.fx / depth <= error_px):
-            count += 1
+        seen = 2.0 * radius * look.fx / look.width / depth if depth > 0.0 else math.inf
+        for size in left:
+            counts[size] += len(some) == 1 or seen * size <= error_px
+        left = [size for size in left if len(some) > 1 and seen * size > error_px]
+        if not left:
             continue
         axis = max(range(3), key=lambda k: high[k] - low[k])
         halves = [[d for d in some if (d[0][axis] <= middle[axis]) == is_low] for is_low in (True, False)]
         if not halves[1]:
             halves = [some[:len(some) // 2], some[len(some) // 2:]]
-        stack += halves
-    return count
+        stack += [(half, left) for half in halves]
+    return counts

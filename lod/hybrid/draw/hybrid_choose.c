@@ -89,14 +89,17 @@ static int is_faster(const hybrid_planning *p, const conic_hybrid_cluster *clust
 static uint32_t fewest(hybrid_planning *p, size_t i) {
   const conic_hybrid_cluster *cluster = &p->hybrid->clusters[p->asked->clusters[i]];
   const conic_hybrid_level *levels = p->hybrid->levels + cluster->first_level;
-  uint32_t best = UINT32_MAX;
+  const double unit = p->units[i];
+  uint32_t best = UINT32_MAX, least = UINT32_MAX;
   for (uint32_t k = cluster->n_levels; k-- > 0;) {
-    int is_more = best < UINT32_MAX && levels[k].count > levels[best].count;
-    int is_far = (double)levels[k].error * p->units[i] > p->error_px; /* whatever reaches out */
-    if (!is_allowed(p, &levels[k]) || is_more || is_far || !(cluster_px(p, i, k) <= p->error_px))
+    if (!is_allowed(p, &levels[k]) || levels[k].count > least)
       continue;
-    if (best == UINT32_MAX || levels[k].count < levels[best].count || is_faster(p, cluster, k, best))
+    if ((double)levels[k].error * unit > p->error_px ||
+        !(cluster_px(p, i, k) <= p->error_px)) /* whatever reaches out */
+      continue;
+    if (best == UINT32_MAX || levels[k].count < least || is_faster(p, cluster, k, best))
       best = k;
+    least = levels[best].count;
   }
   if (best < UINT32_MAX)
     return best;

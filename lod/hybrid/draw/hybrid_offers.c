@@ -104,8 +104,9 @@ double conic_hybrid_node_error_px(const conic_hybrid *hybrid, const conic_hybrid
     return conic_hybrid_error_px(view, &node->bound, level);
   for (uint32_t i = node->begin; i < node->end; i++) {
     const conic_hybrid_bound *bound = &hybrid->clusters[i].bound;
-    double own = conic_hybrid_is_hidden(view, bound, error) ? 0.0 : conic_hybrid_pixels_a_unit(view, bound, error);
-    most = own > most ? own : most;
+    double own = conic_hybrid_pixels_a_unit(view, bound, error);
+    if (own > most && !conic_hybrid_is_hidden(view, bound, error))
+      most = own;
   }
   return error * most;
 }
