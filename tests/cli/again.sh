@@ -107,6 +107,8 @@ again mesh m.obj "${small[@]}"
 again smooth m.obj k.ply "${small[@]}" --as mesh --smooth --transparency
 "$conic" hybrid m.obj -q -o m.chy
 again hybrid m.chy "${small[@]}" --only surfels --error 1 --aov all
+again joined k.ply m.obj "${small[@]}" --error 3
+again octree k.ply m.obj "${small[@]}" --error 3 --accumulate 2
 
 # One of several: a frame of a turntable while the shutter is open, an eye, a view of COLMAP
 rm -f drawn.json

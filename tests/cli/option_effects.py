@@ -68,7 +68,7 @@ CASES = {
     "--color-by": [["--color-by", word] for word in ("height", "intensity", "nonsense", "normal")],
     "--ramp": [["--ramp", "heat"], ["--ramp", "0,1"], ["--ramp", "grey:0,1"]],
     "--where": [["--where", "x > 0.2"], ["--where", "intensity > 20"]],
-    "--error": [["--error", "8"], ["--error", "8:50"], ["--error", "0:50"]],
+    "--error": [["--error", "20"], ["--error", "8:50"], ["--error", "0:50"]],
     "--budget": [["--budget", "50"]],
     "--cache": [["--cache", "kept"]],
     "--only": [["--only", "triangles"], ["--only", "surfels"]],
