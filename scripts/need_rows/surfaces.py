@@ -37,7 +37,7 @@ def off_disc(p, disc):
     d = minus(p, center)
     uu, vv = dot(u, u), dot(v, v)
     if is_dot:
-        return max(0.0, math.hypot(*d) - math.sqrt(max(uu, vv)))
+        return max(0.0, math.hypot(*d) - 2.0 * math.sqrt(max(uu, vv)))  # it leans until it is twice as long
     x, y = dot(d, u) / (uu or 1.0), dot(d, v) / (vv or 1.0)
     out = max(1.0, math.hypot(x, y))
     x, y = x / out, y / out
@@ -144,13 +144,16 @@ def read_ply(path):
                 for column in lists:
                     k = struct.unpack_from(order + TYPES[column[1]], body, at)[0]
                     at += struct.calcsize(TYPES[column[1]]) + k * struct.calcsize(TYPES[column[2]])
-        elif name == "face":
+        elif name in ("face", "tristrips"):
             count, corner = struct.Struct(order + TYPES[columns[0][1]]), TYPES[columns[0][2]]
             for _ in range(n):
                 k = count.unpack_from(body, at)[0]
                 corners = struct.unpack_from(order + str(k) + corner, body, at + count.size)
                 at += count.size + struct.calcsize(str(k) + corner)
-                faces += [(corners[0], corners[j], corners[j + 1]) for j in range(1, k - 1)]
+                if name == "face":
+                    faces += [(corners[0], corners[j], corners[j + 1]) for j in range(1, k - 1)]
+                else:  # a strip begins anew after -1
+                    faces += [corners[j:j + 3] for j in range(k - 2) if min(corners[j:j + 3]) >= 0]
     return names, rows, faces
 
 
