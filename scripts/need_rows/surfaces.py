@@ -119,6 +119,18 @@ TYPES = {"char": "b", "uchar": "B", "short": "h", "ushort": "H", "int": "i", "ui
          "int8": "b", "uint8": "B", "int32": "i", "uint32": "I", "float32": "f", "float64": "d"}
 
 
+def triangles_of_strips(corners):
+    """A strip begins anew after -1; every other triangle is the other way round."""
+    faces, begin = [], 0
+    for i, corner in enumerate(corners):
+        if corner < 0:
+            begin = i + 1
+        elif i >= begin + 2:
+            a, b = corners[i - 2:i]
+            faces.append((a, b, corner) if (i - begin) % 2 == 0 else (b, a, corner))
+    return faces
+
+
 def read_ply(path):
     """The rows of a binary PLY's vertices, by names of columns, and its triangles."""
     with open(path, "rb") as source:
@@ -152,8 +164,8 @@ def read_ply(path):
                 at += count.size + struct.calcsize(str(k) + corner)
                 if name == "face":
                     faces += [(corners[0], corners[j], corners[j + 1]) for j in range(1, k - 1)]
-                else:  # a strip begins anew after -1
-                    faces += [corners[j:j + 3] for j in range(k - 2) if min(corners[j:j + 3]) >= 0]
+                else:
+                    faces += triangles_of_strips(corners)
     return names, rows, faces
 
 
