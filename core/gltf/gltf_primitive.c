@@ -78,7 +78,7 @@ static conic_status read_attribute(conic_gltf_reader *reader, const conic_gltf_n
                                    gltf_numbers *numbers) {
   conic_gltf *gltf = &reader->gltf;
   const double number = conic_gltf_find(gltf, primitive->attributes, name);
-  const double packed = conic_gltf_find(gltf, primitive->draco_attributes, name);
+  const double packed = reader->draco.mesh ? conic_gltf_find(gltf, primitive->draco_attributes, name) : CONIC_GLTF_NONE;
   const conic_gltf_accessor *accessor = conic_gltf_at(gltf, CONIC_GLTF_ACCESSORS, number);
   const int is_position = strcmp(name, "POSITION") == 0;
   conic_gltf_array array;

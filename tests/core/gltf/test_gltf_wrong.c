@@ -87,6 +87,9 @@ static const wrong_file files[] = {
      NULL, NULL, NULL, NULL, "rotation is none"},
     {"\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"nodes\":[{\"mesh\":0,\"scale\":[1,1]}]", NULL,
      NULL, NULL, NULL, "another number of numbers (line 1)"},
+    {"\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"extensions\":{\"KHR_draco_mesh_compression\":{"
+     "\"attributes\":{\"POSITION\":1}}}}]}],\"nodes\":[{\"mesh\":0}]",
+     "{\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}", NULL, NULL, NULL, "have no data"},
     {"\"scene\":3,\"meshes\":[],\"nodes\":[]", NULL, NULL, NULL, NULL, "neither faces nor points"},
     {"\"scene\":3,\"nodes\":[{}]", NULL, NULL, NULL, NULL, "scene is not there"},
 };
