@@ -124,8 +124,8 @@ conic_status conic_laz_format_read(conic_context *context, const char *name, con
                               format->compressor, point_format);
   if (conic_load_16(record + 2) != 0)
     return wrong_format(context, name, "an unknown coder");
-  if (format->chunk_points == 0)
-    return wrong_format(context, name, "chunks of no points");
+  if (format->chunk_points == 0) /* as LAStools writes into COPC, and LASzip reads: the table has each chunk's number */
+    format->chunk_points = CONIC_LAZ_VARIABLE;
   return check_items(context, name, record + RECORD_BYTES, n_items, format);
 }
 

@@ -224,7 +224,8 @@ static const char *take_ept_page(conic_hierarchy *h, const conic_hierarchy_node 
   conic_json json;
   char key[CONIC_JSON_KEY_ROOM];
   const char *wrong = NULL;
-  (void)page;
+  size_t first = h->n_nodes;
+  int has_own = 0;
   if (n_bytes == 0 || conic_json_take(h->context, h->name, bytes, n_bytes, &json) != CONIC_OK)
     return "its hierarchy cannot be read";
   json.is_silent = 1;
@@ -235,7 +236,11 @@ static const char *take_ept_page(conic_hierarchy *h, const conic_hierarchy_node 
   if (!wrong && conic_json_end(&json) != CONIC_OK)
     wrong = "its hierarchy is no JSON";
   conic_json_close(&json);
-  return wrong;
+  for (size_t i = first; i < h->n_nodes; i++)
+    has_own |= h->nodes[i].level == page->level;
+  /* Writers leave out a node that has no points of its own, though it stands above others. */
+  const conic_hierarchy_node empty = {.level = page->level, .key = page->key};
+  return wrong || has_own || first == h->n_nodes ? wrong : conic_hierarchy_add(h, &empty);
 }
 
 static const char *unpack_zstandard(const conic_hierarchy *h, const unsigned char *bytes, size_t n_bytes,
