@@ -166,7 +166,7 @@ static conic_status find_joints(conic_gltf *gltf, const conic_gltf_skin *skin, d
 static conic_status add_influences(conic_gltf_reader *reader, const conic_gltf_node *node,
                                    const conic_gltf_primitive *primitive, int set, size_t n_joints,
                                    double (*const joints)[3][4], size_t count, double (*sums)[13]) {
-  char names[2][16];
+  char names[2][24];
   gltf_numbers of_joints, weights = {NULL, 0, 0};
   snprintf(names[0], sizeof names[0], "JOINTS_%d", set);
   snprintf(names[1], sizeof names[1], "WEIGHTS_%d", set);
@@ -195,7 +195,7 @@ static conic_status find_influences(conic_gltf_reader *reader, const conic_gltf_
   conic_gltf *gltf = &reader->gltf;
   const conic_gltf_skin *skin = conic_gltf_at(gltf, CONIC_GLTF_SKINS, node->skin);
   double(*joints)[3][4] = NULL;
-  char name[16] = "JOINTS_0";
+  char name[24] = "JOINTS_0";
   *sums = NULL;
   if (node->skin == CONIC_GLTF_NONE || conic_gltf_find(gltf, primitive->attributes, name) == CONIC_GLTF_NONE)
     return CONIC_OK;
