@@ -27,8 +27,9 @@ static conic_status take_vertices(conic_assimp_process *process, uint32_t fields
         take_array(process, (fields & CONIC_ASSIMP_COORDINATES) != 0, n, sizeof *part->coordinate, &part->coordinate);
   if (status == CONIC_OK)
     status = take_array(process, (fields & CONIC_ASSIMP_COLORS) != 0, n, sizeof *part->color, &part->color);
-  for (size_t i = 0; status == CONIC_OK && part->color && i < 3 * n; i++)
-    part->color[0][i] = conic_assimp_decode(part->color[0][i]);
+  for (size_t i = 0; status == CONIC_OK && part->color && i < n; i++)
+    for (int channel = 0; channel < 3; channel++)
+      part->color[i][channel] = conic_assimp_decode(part->color[i][channel]);
   return status;
 }
 
