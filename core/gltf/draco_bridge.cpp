@@ -39,13 +39,17 @@ static int copy_attribute(const conic_draco_mesh *opened, uint32_t id, int n, fl
   const draco::PointAttribute *found = mesh_of(opened)->GetAttributeByUniqueId(id);
   if (!found || found->num_components() != n)
     return 0;
-  draco::PointAttribute attribute;
-  attribute.CopyFrom(*found);
-  attribute.set_normalized(false); /* the file says that of its accessor */
-  for (draco::PointIndex i(0); i < mesh_of(opened)->num_points(); ++i)
-    if (!attribute.ConvertValue<float>(attribute.mapped_index(i), static_cast<int8_t>(n),
-                                       values + i.value() * static_cast<size_t>(n)))
-      return 0;
+  try {
+    draco::PointAttribute attribute;
+    attribute.CopyFrom(*found);
+    attribute.set_normalized(false); /* the file says that of its accessor */
+    for (draco::PointIndex i(0); i < mesh_of(opened)->num_points(); ++i)
+      if (!attribute.ConvertValue<float>(attribute.mapped_index(i), static_cast<int8_t>(n),
+                                         values + i.value() * static_cast<size_t>(n)))
+        return 0;
+  } catch (const std::exception &) { /* no exception may leave for C */
+    return 0;
+  }
   return 1;
 }
 
