@@ -32,8 +32,8 @@ conic_status conic_gltf_find_file(const conic_gltf *gltf, conic_gltf_text uri, i
   char raw[LONGEST_NAME], plain[LONGEST_NAME];
   path[0] = 0;
   if (uri.length >= sizeof raw || !gltf->path)
-    return conic_gltf_wrong(gltf, "the name %.80s is too long, or of no file that can be looked for",
-                            uri.bytes ? uri.bytes : "");
+    return conic_gltf_wrong(gltf, "the name %.*s is too long, or of no file that can be looked for",
+                            (int)(uri.length < 80 ? uri.length : 80), uri.bytes ? uri.bytes : "");
   snprintf(raw, sizeof raw, "%.*s", (int)uri.length, uri.bytes);
   memcpy(plain, raw, sizeof plain);
   conic_input_make_plain(plain);

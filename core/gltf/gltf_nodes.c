@@ -90,15 +90,17 @@ static conic_status find_instances(conic_gltf *gltf, const conic_gltf_node *node
                                    size_t *count) {
   static const char *const names[] = {"TRANSLATION", "ROTATION", "SCALE"};
   conic_status status = CONIC_OK;
+  int is_counted = 0;
   *count = 0;
   for (int i = 0; i < 3 && status == CONIC_OK; i++) {
     double accessor = conic_gltf_find(gltf, node->instances, names[i]);
     if (accessor == CONIC_GLTF_NONE)
       continue;
     status = conic_gltf_open_array(gltf, accessor, &arrays[i]);
-    if (status == CONIC_OK && (arrays[i].n != (i == 1 ? 4 : 3) || (*count && *count != arrays[i].count)))
+    if (status == CONIC_OK && (arrays[i].n != (i == 1 ? 4 : 3) || (is_counted && *count != arrays[i].count)))
       return conic_gltf_wrong(gltf, "the %s of instances are of another type or number", names[i]);
     *count = arrays[i].count;
+    is_counted = 1;
   }
   return status;
 }

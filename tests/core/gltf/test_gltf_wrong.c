@@ -90,6 +90,10 @@ static const wrong_file files[] = {
     {"\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"extensions\":{\"KHR_draco_mesh_compression\":{"
      "\"attributes\":{\"POSITION\":1}}}}]}],\"nodes\":[{\"mesh\":0}]",
      "{\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}", NULL, NULL, NULL, "have no data"},
+    {"\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":2}}]}],\"nodes\":[{\"mesh\":0,\"extensions\":{"
+     "\"EXT_mesh_gpu_instancing\":{\"attributes\":{\"TRANSLATION\":0,\"SCALE\":2}}}}]",
+     "{\"bufferView\":0,\"componentType\":5126,\"count\":0,\"type\":\"VEC3\"}", NULL, NULL, NULL,
+     "SCALE of instances are of another type or number"},
     {"\"scene\":3,\"meshes\":[],\"nodes\":[]", NULL, NULL, NULL, NULL, "neither faces nor points"},
     {"\"scene\":3,\"nodes\":[{}]", NULL, NULL, NULL, NULL, "scene is not there"},
 };
