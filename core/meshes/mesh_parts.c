@@ -95,9 +95,8 @@ static conic_status add_attributes(conic_mesh_parts *parts, conic_mesh_part *par
 
 conic_status conic_mesh_parts_add(conic_mesh_parts *parts, conic_mesh_part *part) {
   conic_status status = add_vertices(parts, part);
-  if (status == CONIC_OK)
+  if (status == CONIC_OK && part->normal)
     status = make_room_for_normals(parts);
-  parts->has_normals |= part->normal != NULL;
   for (size_t i = 0; status == CONIC_OK && part->normal && part->is_points && i < part->n_vertices; i++)
     add_normal(parts, part, i);
   return status == CONIC_OK && parts->faces && !part->is_points ? add_attributes(parts, part) : status;
@@ -133,9 +132,11 @@ conic_status conic_mesh_parts_add_triangles(conic_mesh_parts *parts, const conic
 
 conic_status conic_mesh_parts_end(conic_mesh_parts *parts) {
   conic_splats *points = &parts->builder.model->points;
-  if (!parts->has_normals)
+  if (!parts->normals)
     return CONIC_OK;
-  conic_status status = conic_builder_add_field(&parts->builder, CONIC_SPLATS_NORMALS);
+  conic_status status = make_room_for_normals(parts);
+  if (status == CONIC_OK)
+    status = conic_builder_add_field(&parts->builder, CONIC_SPLATS_NORMALS);
   for (size_t i = 0; status == CONIC_OK && i < points->count; i++) {
     conic_normalize(parts->normals[i]);
     for (int axis = 0; axis < 3; axis++)

@@ -12,9 +12,8 @@ typedef struct conic_mesh_parts {
   conic_builder builder;
   conic_faces *faces; /* the model's, where faces are kept */
   conic_point_slots slots;
-  double (*normals)[3];
-  size_t normal_room; /* for the sums of the corners' normals at each point */
-  int has_normals;
+  double (*normals)[3]; /* the sums of the corners' normals at each point; null while no part has any */
+  size_t normal_room;
 } conic_mesh_parts;
 
 /* Vertices, and whether there are triangles between them. Arrays may be null but for the places. */
