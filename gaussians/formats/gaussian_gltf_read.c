@@ -133,34 +133,31 @@ static conic_status take_plain(gaussian_gltf_reader *reader, const conic_gltf_pr
 static conic_status read_packed(gaussian_gltf_reader *reader, const conic_gltf_primitive *primitive,
                                 conic_gaussians *packed) {
   conic_gltf_bytes view;
-  memset(packed, 0, sizeof *packed);
   conic_status status = conic_gltf_open_view(&reader->gltf, primitive->spz_view, &view);
   const conic_gaussian_bytes file = {reader->file->context, reader->file->name,   NULL, view.bytes,
                                      view.n_bytes,          reader->file->options};
   return status == CONIC_OK ? conic_spz_read(&file, packed) : status;
 }
 
-static conic_status take_packed(gaussian_gltf_reader *reader, const conic_gltf_primitive *primitive, size_t count) {
-  conic_gaussians *gaussians = reader->gaussians, packed;
-  conic_status status = read_packed(reader, primitive, &packed);
-  const size_t n = packed.count == count ? count : 0, first = reader->n_placed;
-  const size_t n_own = conic_harmonics_of_degree(packed.sh_degree);
-  for (int k = 0; status == CONIC_OK && k < 4; k++) {
-    memcpy(gaussians->rotation[k] + first, packed.rotation[k], n * sizeof(float));
-    memcpy((k < 3 ? gaussians->position[k] : gaussians->opacity) + first, k < 3 ? packed.position[k] : packed.opacity,
+/* What was unpacked, into the next Gaussians. */
+static void take_packed(gaussian_gltf_reader *reader, const conic_gaussians *packed) {
+  conic_gaussians *gaussians = reader->gaussians;
+  const size_t n = packed->count, first = reader->n_placed;
+  const size_t n_own = conic_harmonics_of_degree(packed->sh_degree);
+  for (int k = 0; k < 4; k++) {
+    memcpy(gaussians->rotation[k] + first, packed->rotation[k], n * sizeof(float));
+    memcpy((k < 3 ? gaussians->position[k] : gaussians->opacity) + first, k < 3 ? packed->position[k] : packed->opacity,
            n * sizeof(float));
     if (k < 3)
-      memcpy(gaussians->scale[k] + first, packed.scale[k], n * sizeof(float));
+      memcpy(gaussians->scale[k] + first, packed->scale[k], n * sizeof(float));
   }
-  for (size_t i = 0; status == CONIC_OK && i < n; i++) {
+  for (size_t i = 0; i < n; i++) {
     float room[CONIC_MOST_HARMONICS];
-    const float *harmonics = conic_gaussians_harmonics(&packed, i, room);
+    const float *harmonics = conic_gaussians_harmonics(packed, i, room);
     for (size_t k = 0; k < conic_harmonics_of_degree(gaussians->sh_degree); k++)
       conic_gaussians_put_harmonic(gaussians, first + i, k, k < n_own ? harmonics[k] : 0.0f);
   }
-  gaussians->is_antialiased |= packed.is_antialiased;
-  conic_gaussians_release(reader->file->context, &packed);
-  return status;
+  gaussians->is_antialiased |= packed->is_antialiased;
 }
 
 /* --- the nodes --- */
@@ -224,19 +221,17 @@ static void tell_unknown(const gaussian_gltf_reader *reader, const char *what, c
     conic_gltf_warn(&reader->gltf, "the %s %s of its Gaussians is not known; they are taken as %s", what, value, taken);
 }
 
-/* What there is before it is read: how many, of which degree, and what of it is not known. */
+/* What there is before it is taken: how many, of which degree, and what of it is not known. */
 static conic_status count_primitive(gaussian_gltf_reader *reader, const conic_gltf_primitive *primitive,
-                                    size_t *count) {
+                                    conic_gaussians *packed, size_t *count) {
   const conic_gltf_accessor *positions = conic_gltf_at(
       &reader->gltf, CONIC_GLTF_ACCESSORS, conic_gltf_find(&reader->gltf, primitive->attributes, "POSITION"));
   int degree = find_primitive_degree(reader, primitive);
-  conic_gaussians packed = {.count = 0};
   conic_status status = CONIC_OK;
   if (primitive->spz_view != CONIC_GLTF_NONE) {
-    status = read_packed(reader, primitive, &packed);
-    *count = packed.count;
-    degree = packed.sh_degree;
-    conic_gaussians_release(reader->file->context, &packed);
+    status = read_packed(reader, primitive, packed);
+    *count = packed->count;
+    degree = packed->sh_degree;
   } else if (!positions || !conic_gltf_is_index(positions->count, CONIC_MOST_GAUSSIANS))
     return conic_gltf_wrong(&reader->gltf, "an accessor of Gaussians is not there, or is of too many");
   else
@@ -255,19 +250,24 @@ static conic_status count_primitive(gaussian_gltf_reader *reader, const conic_gl
 
 static conic_status place_primitive(gaussian_gltf_reader *reader, const conic_gltf_primitive *primitive,
                                     const double world[3][4]) {
+  const size_t most = reader->gaussians ? reader->gaussians->count : CONIC_MOST_GAUSSIANS;
+  conic_gaussians packed = {.count = 0};
   gltf_place place;
   size_t count = 0;
   if (!find_place(world, &place))
     return conic_gltf_wrong(&reader->gltf, "a node stretches or mirrors its Gaussians, which is not read");
-  conic_status status = count_primitive(reader, primitive, &count);
-  if (status == CONIC_OK && reader->n_placed + count > CONIC_MOST_GAUSSIANS)
+  conic_status status = count_primitive(reader, primitive, &packed, &count);
+  if (status == CONIC_OK && reader->n_placed + count > most)
     status = conic_gltf_wrong(&reader->gltf, "too many Gaussians");
   if (status == CONIC_OK && reader->gaussians) {
-    status = primitive->spz_view == CONIC_GLTF_NONE ? take_plain(reader, primitive, count)
-                                                    : take_packed(reader, primitive, count);
+    if (primitive->spz_view == CONIC_GLTF_NONE)
+      status = take_plain(reader, primitive, count);
+    else
+      take_packed(reader, &packed);
     if (status == CONIC_OK)
       put_in_place(reader, &place, count);
   }
+  conic_gaussians_release(reader->file->context, &packed);
   reader->n_placed += count;
   return status;
 }
