@@ -105,6 +105,8 @@ typedef struct conic_gltf_material {
   char alpha_mode[8];
 } conic_gltf_material;
 
+extern const conic_gltf_material conic_gltf_no_material; /* what is drawn without one */
+
 typedef struct conic_gltf_attribute {
   char name[CONIC_JSON_KEY_ROOM];
   double accessor;

@@ -164,12 +164,12 @@ static const conic_gltf_accessor no_accessor = {.view = NONE};
 static const conic_gltf_image no_image = {.view = NONE};
 static const conic_gltf_sampler no_sampler = {{10497, 10497}};
 static const conic_gltf_texture no_texture = {NONE, NONE, NONE, NONE};
-static const conic_gltf_material no_material = {.color = {1, 1, 1, 1},
-                                                .diffuse = {1, 1, 1, 1},
-                                                .cutoff = 0.5,
-                                                .base = NO_USE,
-                                                .of_diffuse = NO_USE,
-                                                .of_emission = NO_USE};
+const conic_gltf_material conic_gltf_no_material = {.color = {1, 1, 1, 1},
+                                                    .diffuse = {1, 1, 1, 1},
+                                                    .cutoff = 0.5,
+                                                    .base = NO_USE,
+                                                    .of_diffuse = NO_USE,
+                                                    .of_emission = NO_USE};
 static const conic_gltf_primitive no_primitive = {
     .indices = NONE, .material = NONE, .mode = 4, .draco_view = NONE, .spz_view = NONE};
 static const conic_gltf_node no_node = {.mesh = NONE,
@@ -198,7 +198,7 @@ static const struct list_facts {
     [CONIC_GLTF_IMAGES] = {sizeof(conic_gltf_image), &no_image, image_fields},
     [CONIC_GLTF_SAMPLERS] = {sizeof(conic_gltf_sampler), &no_sampler, sampler_fields},
     [CONIC_GLTF_TEXTURES] = {sizeof(conic_gltf_texture), &no_texture, texture_fields},
-    [CONIC_GLTF_MATERIALS] = {sizeof(conic_gltf_material), &no_material, material_fields},
+    [CONIC_GLTF_MATERIALS] = {sizeof(conic_gltf_material), &conic_gltf_no_material, material_fields},
     [CONIC_GLTF_MESHES] = {sizeof(conic_gltf_mesh), &zeros, mesh_fields},
     [CONIC_GLTF_PRIMITIVES] = {sizeof(conic_gltf_primitive), &no_primitive, primitive_fields},
     [CONIC_GLTF_TARGETS] = {sizeof(conic_gltf_target), &zeros, NULL},

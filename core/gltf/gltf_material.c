@@ -65,7 +65,7 @@ static conic_status read_texture(conic_gltf *gltf, const conic_gltf_texture *tex
   conic_gltf_bytes view = {NULL, 0, 0};
   unsigned char *own = NULL;
   char name[64];
-  if (!image) {
+  if (!image || (image->view == CONIC_GLTF_NONE && !image->uri.bytes)) {
     conic_gltf_warn(gltf, texture->basisu != CONIC_GLTF_NONE
                               ? "a texture is left out: KTX2 (KHR_texture_basisu) is not read"
                               : "a texture is left out: it has no picture");
@@ -114,11 +114,6 @@ static conic_status make_material(conic_gltf_reader *reader, const conic_gltf_ma
 }
 
 conic_status conic_gltf_use_material(conic_gltf_reader *reader, double number) {
-  static const conic_gltf_material white = {.color = {1, 1, 1, 1},
-                                            .cutoff = 0.5,
-                                            .base = {.texture = CONIC_GLTF_NONE},
-                                            .of_diffuse = {.texture = CONIC_GLTF_NONE},
-                                            .of_emission = {.texture = CONIC_GLTF_NONE}};
   conic_gltf *gltf = &reader->gltf;
   conic_faces *faces = reader->parts.faces;
   const conic_gltf_material *material = conic_gltf_at(gltf, CONIC_GLTF_MATERIALS, number);
@@ -130,7 +125,7 @@ conic_status conic_gltf_use_material(conic_gltf_reader *reader, double number) {
     if (faces->n_made == CONIC_MAX_MATERIALS)
       return conic_gltf_wrong(gltf, "there are too many materials");
     *made = (uint32_t)faces->n_made;
-    status = make_material(reader, material ? material : &white);
+    status = make_material(reader, material ? material : &conic_gltf_no_material);
   }
   faces->current_material = *made;
   return status;

@@ -455,12 +455,10 @@ static conic_status add_vertices(conic_gltf_reader *reader, const conic_gltf_nod
 
 conic_status conic_gltf_add_primitive(conic_gltf_reader *reader, const conic_gltf_node *node,
                                       const conic_gltf_primitive *primitive, const double world[3][4]) {
-  static const conic_gltf_texture_use plain = {
-      .texture = CONIC_GLTF_NONE, .other_set = CONIC_GLTF_NONE, .scale = {1, 1}};
   conic_gltf *gltf = &reader->gltf;
   const conic_gltf_texture_use *found =
       conic_gltf_color_texture(gltf, conic_gltf_at(gltf, CONIC_GLTF_MATERIALS, primitive->material));
-  conic_gltf_texture_use use = found ? *found : plain;
+  conic_gltf_texture_use use = found ? *found : conic_gltf_no_material.base;
   double rows[3][3];
   int is_mirrored = find_normal_rows(world, rows);
   if (conic_gltf_find(gltf, primitive->attributes, "POSITION") == CONIC_GLTF_NONE)
