@@ -5,10 +5,12 @@
 /* An accessor without a view has zeros, which cost a file nothing; more of them than that are of no use. */
 static const size_t most_zeros_bytes = (size_t)1 << 28;
 
+/* Bytes of a component, by its type from INT8 on. */
+static const size_t sizes[] = {1, 1, 2, 2, 0, 4, 4};
+
 static size_t component_bytes(double component) {
-  static const size_t bytes[] = {1, 1, 2, 2, 0, 4, 4};
   return component >= CONIC_GLTF_INT8 && conic_gltf_is_index(component, CONIC_GLTF_FLOAT + 1)
-             ? bytes[(int)component - CONIC_GLTF_INT8]
+             ? sizes[(int)component - CONIC_GLTF_INT8]
              : 0;
 }
 
@@ -118,7 +120,7 @@ void conic_gltf_close_array(const conic_gltf *gltf, conic_gltf_array *array) {
 
 double conic_gltf_value(const conic_gltf_array *array, size_t i, int k) {
   static const double most[] = {127.0, 255.0, 32767.0, 65535.0};
-  const unsigned char *bytes = array->bytes + i * array->stride + (size_t)k * component_bytes((double)array->component);
+  const unsigned char *bytes = array->bytes + i * array->stride + (size_t)k * sizes[array->component - CONIC_GLTF_INT8];
   if (array->component == CONIC_GLTF_FLOAT)
     return (double)conic_load_float(bytes);
   const uint32_t bits = whole_at(bytes, array->component);
