@@ -280,6 +280,10 @@ conic_status conic_json_text(conic_json *json, char *text, size_t room) {
   return peek(json) == '"' ? read_string(json, text, room) : conic_json_wrong(json, "a string is expected");
 }
 
+int conic_json_is_object(conic_json *json) {
+  return peek(json) == '{';
+}
+
 size_t conic_json_text_room(conic_json *json) {
   size_t n = 1;
   if (peek(json) == '"')

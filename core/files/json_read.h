@@ -30,6 +30,8 @@ void conic_json_close(conic_json *json);
 conic_status conic_json_begin_object(conic_json *json);
 conic_status conic_json_begin_array(conic_json *json);
 
+int conic_json_is_object(conic_json *json); /* whether the next value is one */
+
 /* To the next member's value. Returns 0 at the end of the object, which is then left, and after an error. Keys are cut
  * to the room. */
 int conic_json_next_member(conic_json *json, char key[CONIC_JSON_KEY_ROOM]);

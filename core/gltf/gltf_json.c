@@ -238,19 +238,11 @@ static conic_status read_map(conic_gltf *gltf, conic_gltf_slice *slice) {
 
 static conic_status read_object(conic_gltf *gltf, const field *fields, char *item, const char *path);
 
-/* The dictionaries of version 1 are arrays in version 2. */
-static int is_dictionary(const conic_json *json) {
-  const char *c = json->next;
-  while (c < json->end && (*c == ' ' || *c == '\n' || *c == '\r' || *c == '\t'))
-    c++;
-  return c < json->end && *c == '{';
-}
-
 static conic_status read_items(conic_gltf *gltf, const field *f, char *item) {
   conic_json *json = &gltf->json;
   conic_gltf_slice *slice = f->at == NO_SLICE ? NULL : (conic_gltf_slice *)(void *)(item + f->at);
   size_t id = f->kind == LIST ? CONIC_GLTF_NUMBERS : f->n, first = gltf->lists[id].n;
-  if (f->kind == ITEMS && is_dictionary(json))
+  if (f->kind == ITEMS && conic_json_is_object(json)) /* the dictionaries of version 1 are arrays in version 2 */
     return conic_json_wrong(json, "this is glTF 1, which is not read; save it as glTF 2 (Blender, or gltf-pipeline)");
   conic_status status = conic_json_begin_array(json);
   while (status == CONIC_OK && conic_json_next_item(json)) {
