@@ -1,27 +1,7 @@
 #include "lod/planner/plan.h"
 
 #include "core/base/base.h"
-
-/* Sorts by falling errors, which order like their bits as none is negative, and keeps the order of equals. `other` has
- * room for as many. The result is in `openings`. */
-static void sort_openings(conic_plan_opening *openings, conic_plan_opening *other, size_t n) {
-  enum { DIGIT_BITS = 11, N_DIGITS = 1 << DIGIT_BITS };
-  for (int shift = 0; shift < 64 && n > 0; shift += DIGIT_BITS) {
-    size_t places[N_DIGITS] = {0}, place = 0;
-    for (size_t i = 0; i < n; i++)
-      places[conic_bits_of_double(openings[i].px) >> shift & (N_DIGITS - 1)]++;
-    if (places[conic_bits_of_double(openings[0].px) >> shift & (N_DIGITS - 1)] == n)
-      continue;
-    for (int digit = N_DIGITS - 1; digit >= 0; digit--) {
-      size_t count = places[digit];
-      places[digit] = place;
-      place += count;
-    }
-    for (size_t i = 0; i < n; i++)
-      other[places[conic_bits_of_double(openings[i].px) >> shift & (N_DIGITS - 1)]++] = openings[i];
-    memcpy(openings, other, n * sizeof *openings);
-  }
-}
+#include "core/base/radix.h"
 
 /* Lists more than the budget has room for, but not all of a large tree: what gives way at half the error is some four
  * times as much, until little is left. */
@@ -42,26 +22,35 @@ static size_t open_enough(const conic_plan_tree *tree, uint64_t budget, conic_pl
   }
 }
 
+/* The least error for which there are few enough; the items have the openings' numbers, by falling errors. */
+static double find_least(const conic_plan_opening *openings, const conic_radix_item *items, size_t n, uint64_t n_first,
+                         uint64_t budget) {
+  int64_t count = (int64_t)n_first;
+  double least_px = HUGE_VAL, before_px = HUGE_VAL;
+  for (size_t i = 0; i < n; i++) { /* before all that have this error give way, so many are chosen: */
+    const conic_plan_opening *opening = &openings[items[i].value];
+    if ((i == 0 || opening->px < before_px) && count <= (int64_t)budget)
+      least_px = opening->px;
+    before_px = opening->px;
+    count += opening->change;
+  }
+  return count <= (int64_t)budget ? 0.0 : least_px;
+}
+
 conic_status conic_plan_fit_tree(conic_context *context, const conic_plan_tree *tree, uint64_t budget,
                                  double *error_px) {
   conic_plan_opening *openings = conic_memory_allocate(context, tree->n_nodes, sizeof *openings);
-  conic_plan_opening *other = conic_memory_allocate(context, tree->n_nodes, sizeof *other);
   uint64_t n_first;
-  if (openings && other) {
-    size_t n = open_enough(tree, budget, openings, &n_first);
-    int64_t count = (int64_t)n_first;
-    sort_openings(openings, other, n);
-    *error_px = HUGE_VAL;
-    for (size_t i = 0; i < n; i++) { /* before all that have this error give way, so many are chosen: */
-      if ((i == 0 || openings[i].px < openings[i - 1].px) && count <= (int64_t)budget)
-        *error_px = openings[i].px;
-      count += openings[i].change;
-    }
-    if (count <= (int64_t)budget)
-      *error_px = 0.0;
-  }
-  conic_status status = openings && other ? CONIC_OK : CONIC_ERROR_MEMORY;
-  conic_memory_release_these(context, openings, other);
+  if (!openings)
+    return CONIC_ERROR_MEMORY;
+  size_t n = open_enough(tree, budget, openings, &n_first);
+  conic_radix_item *items = conic_memory_allocate(context, n, sizeof *items);
+  for (size_t i = 0; items && i < n; i++) /* errors order like their bits, as none is negative */
+    items[i] = (conic_radix_item){~conic_bits_of_double(openings[i].px), (uint32_t)i};
+  conic_status status = items ? conic_radix_sort(context, items, n, 64) : CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK)
+    *error_px = find_least(openings, items, n, n_first, budget);
+  conic_memory_release_these(context, openings, items);
   return status;
 }
 
