@@ -87,9 +87,8 @@ static double find_most_error(const lean_choosing *c, double error_px) {
     place[axis] = 0.5 * extent[axis];
   }
   conic_viewpoint_move(&from, place, p);
-  double radius = 0.5 * conic_length(extent), z = p[2] - radius;
   double focal_px = c->camera->fx > c->camera->fy ? c->camera->fx : c->camera->fy;
-  return z > c->render->near_z ? error_px * z * z / (focal_px * (conic_length(p) + radius)) : 0.0;
+  return conic_viewpoint_length_of(p, 0.5 * conic_length(extent), c->render->near_z, focal_px, error_px);
 }
 
 /* For this picture alone, or once. */
@@ -302,7 +301,6 @@ double conic_lean_saving(const conic_source *source, const conic_camera *camera,
 
 /* --- what it is called --- */
 
-/* Splats by their index in all, or, of a node, from their number on; triangles come after these. */
 void conic_lean_name(const conic_lean_drawing *lean, const conic_source_choice *choice, conic_image *image) {
   uint32_t *ids = image->planes[CONIC_PLANE_ID];
   const size_t n_splats = choice->drawing.splats->count, n = (size_t)image->width * (size_t)image->height;

@@ -28,11 +28,14 @@ typedef struct conic_lean_drawing {
 conic_status conic_lean_choose(conic_source *source, const conic_drawing *all, const conic_splats *unturned,
                                const conic_camera *camera, const conic_render_options *render,
                                conic_lean_drawing *lean);
-/* How many of the splats that the middle of the picture shows, an eighth as wide and high, there are for one that an
- * error of a pixel leaves, after a picture of all; 1 where that is not known. It takes as long as a look at each splat.
- */
+/* After a picture of all: how many times fewer splats an error of one pixel leaves. It looks at the middle of the
+ * picture, an eighth as wide and high. 1: that is not known. It takes as long as a look at each splat. */
 double conic_lean_saving(const conic_source *source, const conic_camera *camera, const conic_render_options *render);
 
+/* Turns the numbers in the picture's plane of ids, where it has one, from those of what was chosen to those of all:
+ * first the splats, then the octree's nodes, then the triangles. */
 void conic_lean_name(const conic_lean_drawing *lean, const conic_source_choice *choice, conic_image *image);
+/* Adds what stood for the splats and triangles of the last picture, and how long building it took. */
 void conic_lean_tell(const conic_lean_drawing *lean, const conic_source_choice *choice, conic_facts *facts);
+/* Leaves it as before the first picture, without a cache. */
 void conic_lean_release(conic_context *context, conic_lean_drawing *lean);

@@ -23,6 +23,14 @@ static inline void conic_viewpoint_move_floats(const conic_viewpoint *from, cons
   conic_viewpoint_move(from, moved, p);
 }
 
+/* The greatest length in a sphere about p, in camera space, that is no more than error_px on the screen in any
+ * direction; 0: the sphere reaches the near distance. */
+static inline double conic_viewpoint_length_of(const double p[3], double radius, double near_z, double focal_px,
+                                               double error_px) {
+  double z = p[2] - radius;
+  return z > near_z ? error_px * z * z / (focal_px * (conic_length(p) + radius)) : 0.0;
+}
+
 /* Whether a sphere about p, in camera space, is wholly beyond a side. */
 static inline int conic_viewpoint_misses(const conic_viewpoint *from, const double p[3], double radius) {
   int is_beyond = 0;

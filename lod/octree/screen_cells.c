@@ -33,12 +33,6 @@ typedef struct cells_job {
 
 /* --- keys --- */
 
-/* The greatest length at a sphere that is no more than the error on the screen. */
-static double length_of(const cells_job *job, const double p[3], double radius) {
-  double z = p[2] - radius;
-  return z > job->near_z ? job->error_px * z * z / (job->focal_px * (conic_length(p) + radius)) : 0.0;
-}
-
 static uint64_t cell_of(const cells_job *job, const double p[3]) {
   const uint64_t bits = conic_bits_of_double(p[2]), mantissa = (UINT64_C(1) << 52) - 1;
   const double depth = conic_double_of_bits((bits & mantissa) | UINT64_C(1023) << 52); /* from 1 to 2 in its octave */
@@ -189,7 +183,7 @@ static int join_range(const cells_job *job, size_t begin, size_t end) {
   job->loops.add_reach(job->sorted, begin, end, job->cutoff, &frame, &reach);
   double major = reach.reach * hair, radius = (reach.radius > major ? reach.radius : major) * hair;
   conic_viewpoint_move(&job->view, frame.position, p);
-  double allowed = length_of(job, p, radius);
+  double allowed = conic_viewpoint_length_of(p, radius, job->near_z, job->focal_px, job->error_px);
   if (!(reach.height * hair <= allowed) || !is_covered(job, begin, end, &frame, major, allowed)) /* NaN, too */
     return 0;
   put_joined(job, begin, &sum, &frame, major / job->cutoff);

@@ -234,7 +234,7 @@ static uint64_t count_chosen(const hybrid_planning *p) {
   return count;
 }
 
-/* Chooses for all; how many that are, without those that fit clusters to each other. */
+/* Chooses for all. Returns how many primitives that takes, without those that fit clusters to each other. */
 static uint64_t choose_alone(void *data, double error_px, double *reached_px) {
   hybrid_planning *p = data;
   p->error_px = error_px;
@@ -266,7 +266,7 @@ static uint64_t count_stitches(const hybrid_planning *p, double *counts) {
   return count;
 }
 
-/* The same with those. */
+/* The same, but counts those that fit clusters to each other, too. */
 static uint64_t choose_fitting(void *data, double error_px, double *reached_px) {
   uint64_t count = choose_alone(data, error_px, reached_px);
   return count + count_stitches(data, NULL);
