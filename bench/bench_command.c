@@ -37,6 +37,7 @@ static int parse(cli_session *session, int argc, char **argv, cli_bench_job *job
       {"error", CLI_TEXT, &job->errors_text, "LIST",
        "of files that choose what they draw, in pixels; 0: all there is [0 for .chy; the others are read whole]",
        .acts.with = "@"},
+      CLI_OUTSIDE(session),
       {"turntable", CLI_INT, &job->n_turns, "N", "N warm frames, all around the scene, and their mean", 1,
        CLI_BENCH_MOST_FRAMES},
       {"repeat", CLI_INT, &job->repeat, "N", "warm frames a line [3 to 21, about a second]", 1, CLI_BENCH_MOST_FRAMES,

@@ -108,6 +108,8 @@ int cli_parse_length(const char *text, void *length);
           .on = CLI_FACT(TEXT)                                                                                         \
         }                                                                                                              \
   }
+/* Both, for commands that read points and meshes of any kind. */
+#define CLI_READING(session, columns) CLI_COLUMNS(columns), CLI_OUTSIDE(session)
 int cli_parse_columns(const char *text, void *columns);
 
 /* Which points are wanted: the option --where, into a const char *. */

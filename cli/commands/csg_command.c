@@ -133,7 +133,7 @@ static int run_csg(cli_session *session, int argc, char **argv) {
        "neighbours that a raw point's size is estimated from, 6 to 64 [20]", 6, 64,
        .acts = {.on = CLI_FACT(RAW), .is_warned = 1}},
       {"cutoff", CLI_NUMBER, &job.cutoff, "F", "the --cutoff of the pictures to come [1.5]", 0.25, 5},
-      CLI_COLUMNS(&job.base.columns),
+      CLI_READING(session, &job.base.columns),
   };
   int exit_code =
       cli_build_arguments(&job.base, options, sizeof options / sizeof *options, argc, argv, positional, &n_positional);

@@ -238,7 +238,7 @@ static int run_cut(cli_session *session, int argc, char **argv) {
        1e9, .acts.is_work = 1},
       {"cutoff", CLI_NUMBER, &job.cutoff, "F", "the --cutoff of the pictures to come [1.5]", 0.25, 5,
        .acts.with = "o=.lpc"},
-      CLI_COLUMNS(&job.base.columns),
+      CLI_READING(session, &job.base.columns),
   };
   int exit_code =
       cli_build_arguments(&job.base, options, sizeof options / sizeof *options, argc, argv, positional, &n_positional);

@@ -416,8 +416,7 @@ static int run_mls(cli_session *session, int argc, char **argv) {
        .acts = {.with = "@project", .is_work = 1}},
       {"isa", CLI_CHOICE, &job.isa, "ISA", "auto, scalar, sse2, avx2, avx512, neon; changes no bit [auto]",
        .choices = isa_names, .acts.is_work = 1},
-      CLI_COLUMNS(&job.base.columns),
-      CLI_OUTSIDE(session),
+      CLI_READING(session, &job.base.columns),
   };
   int exit_code =
       cli_build_arguments(&job.base, options, sizeof options / sizeof *options, argc, argv, positional, &n_positional);

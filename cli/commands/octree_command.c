@@ -112,8 +112,7 @@ static int run_octree(cli_session *session, int argc, char **argv) {
       {"k", CLI_INT, &job.estimate.n_neighbours, "K",
        "neighbours that a raw point's size is estimated from, 6 to 64 [20]", 6, 64,
        .acts = {.on = CLI_FACT(RAW), .is_warned = 1}},
-      CLI_COLUMNS(&job.base.columns),
-      CLI_OUTSIDE(session),
+      CLI_READING(session, &job.base.columns),
       CLI_WHERE(&job.base.where),
       CLI_BUILD_COLOR_OPTIONS(&job.coloring, CLI_UP_OF_COLORS),
   };

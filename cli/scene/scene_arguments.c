@@ -229,7 +229,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .acts = {.on = CLI_FACT(HYBRID)}},
       {"method", CLI_CHOICE, &raw.method, "NAME",
        "how a splat becomes pixels, from rough to exact: point, disc, affine, conic, ray; auto: conic where that is "
-       "exact enough, else ray; patch: as part of a smooth surface through the points, with patch:D by polynomials of "
+       "exact enough, else ray or, of large splats, laplace; patch: as part of a smooth surface through the points, with patch:D by polynomials of "
        "degree D, 1 to 4 [3], and with patch:D:H smoother than the length H, as 2x [auto]",
        .choices = words.methods, .is_given = &raw.is_method_given, .group = "how splats are drawn",
        .intro = "Kernels, filters and samples, and the profiles of Gaussian scenes.", .parse_tail = parse_patch,

@@ -14,7 +14,7 @@ typedef struct conic_layers_options {
   double quantum;        /* step of the positions: a length, or in sampling distances if the next flag is set */
   int quantum_in_spacings;
   float cutoff;  /* F_g of the kernel that will draw */
-  int keeps_all; /* ellipses, opacities, dots and clip lines are kept, with fine steps */
+  int keeps_all; /* ellipses, opacities and clip lines are kept, too, with fine steps */
   /* To go on with a file that there is (conic_layers_continue): steps count from this corner, and their length is
    * `quantum`. Where samples lie below the corner, steps count from one that is whole steps away. Normals have no
    * side. */

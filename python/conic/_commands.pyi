@@ -207,8 +207,9 @@ def render(
         take it from there the next time
     only: of a .chy, draw every patch as triangles, or every one as surfels (splats) [as built]
     method: how a splat becomes pixels, from rough to exact: point, disc, affine, conic, ray; auto: conic where
-        that is exact enough, else ray; patch: as part of a smooth surface through the points, with patch:D by
-        polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the length H, as 2x [auto]
+        that is exact enough, else ray or, of large splats, laplace; patch: as part of a smooth surface through
+        the points, with patch:D by polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the
+        length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
         gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque
         splats; inria-2023 and 2dgs-2024 with :ignore-center behind them take the picture's middle for the
@@ -385,8 +386,9 @@ def verify(
         take it from there the next time
     only: of a .chy, draw every patch as triangles, or every one as surfels (splats) [as built]
     method: how a splat becomes pixels, from rough to exact: point, disc, affine, conic, ray; auto: conic where
-        that is exact enough, else ray; patch: as part of a smooth surface through the points, with patch:D by
-        polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the length H, as 2x [auto]
+        that is exact enough, else ray or, of large splats, laplace; patch: as part of a smooth surface through
+        the points, with patch:D by polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the
+        length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
         gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque
         splats; inria-2023 and 2dgs-2024 with :ignore-center behind them take the picture's middle for the
@@ -578,8 +580,9 @@ def judge(
         take it from there the next time
     only: of a .chy, draw every patch as triangles, or every one as surfels (splats) [as built]
     method: how a splat becomes pixels, from rough to exact: point, disc, affine, conic, ray; auto: conic where
-        that is exact enough, else ray; patch: as part of a smooth surface through the points, with patch:D by
-        polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the length H, as 2x [auto]
+        that is exact enough, else ray or, of large splats, laplace; patch: as part of a smooth surface through
+        the points, with patch:D by polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the
+        length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
         gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque
         splats; inria-2023 and 2dgs-2024 with :ignore-center behind them take the picture's middle for the
@@ -751,8 +754,9 @@ def explain(
         take it from there the next time
     only: of a .chy, draw every patch as triangles, or every one as surfels (splats) [as built]
     method: how a splat becomes pixels, from rough to exact: point, disc, affine, conic, ray; auto: conic where
-        that is exact enough, else ray; patch: as part of a smooth surface through the points, with patch:D by
-        polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the length H, as 2x [auto]
+        that is exact enough, else ray or, of large splats, laplace; patch: as part of a smooth surface through
+        the points, with patch:D by polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the
+        length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
         gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque
         splats; inria-2023 and 2dgs-2024 with :ignore-center behind them take the picture's middle for the
@@ -1035,6 +1039,7 @@ def layers(
     resume: Optional[PathLike] = None,
     where: Optional[PathLike] = None,
     columns: Optional[Union[str, float, Sequence[float]]] = None,
+    allow_outside: Optional[bool] = None,
     color_by: Optional[PathLike] = None,
     ramp: Optional[Union[str, float, Sequence[float]]] = None,
     up: Optional[Union[str, float, Sequence[float]]] = None,
@@ -1060,6 +1065,7 @@ def layers(
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
+    allow_outside: a glTF may name buffers and pictures outside of its folder
     color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value
         in the file by its name; auto: rgb, or else intensity [auto]
     ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain or classes; the values at its
@@ -1138,6 +1144,7 @@ def csg(
     k: Optional[int] = None,
     cutoff: Optional[float] = None,
     columns: Optional[Union[str, float, Sequence[float]]] = None,
+    allow_outside: Optional[bool] = None,
 ) -> Scene:
     """Joins two solids (`union=True`), intersects them (`intersection`), or takes one from the other (`difference`).
 
@@ -1150,6 +1157,7 @@ def csg(
     k: neighbours that a raw point's size is estimated from, 6 to 64 [20]
     cutoff: the --cutoff of the pictures to come [1.5]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
+    allow_outside: a glTF may name buffers and pictures outside of its folder
     threads: how many threads compute; the results never depend on it [0: all]
     """
 
@@ -1351,8 +1359,9 @@ def gradient(
         take it from there the next time
     only: of a .chy, draw every patch as triangles, or every one as surfels (splats) [as built]
     method: how a splat becomes pixels, from rough to exact: point, disc, affine, conic, ray; auto: conic where
-        that is exact enough, else ray; patch: as part of a smooth surface through the points, with patch:D by
-        polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the length H, as 2x [auto]
+        that is exact enough, else ray or, of large splats, laplace; patch: as part of a smooth surface through
+        the points, with patch:D by polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the
+        length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
         gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque
         splats; inria-2023 and 2dgs-2024 with :ignore-center behind them take the picture's middle for the

@@ -59,6 +59,13 @@ for command in 'render --as mesh --size 16x16 -o a.pfm' info 'prepare -o b.ply' 
   # shellcheck disable=SC2086
   run 0 $command inner/g.gltf --allow-outside
 done
+# (every command that says so knows the option)
+for command in $("$conic" help | sed -nE 's/^  ([a-z]+) .*/\1/p'); do
+  "$conic" "$command" inner/g.gltf -o c.ply > /dev/null 2> err
+  "$conic" "$command" inner/g.gltf >> err 2>&1
+  ! grep -q -e '(--allow-outside' err || ! "$conic" "$command" inner/g.gltf --allow-outside 2>&1 | grep 'unknown option' ||
+    fail "$command names --allow-outside, but does not know it"
+done
 printf '{"width": 16, "height": 16, "fx": 16, "fy": 16, "cx": 8, "cy": 8,
   "world_to_camera": [[1, 0, 0, 0], [0, -1, 0, 0], [0, 0, -1, 6], [0, 0, 0, 1]]}' > camera.json
 kept camera.json render s.ply --camera camera.json -o a.pfm --json camera.json
