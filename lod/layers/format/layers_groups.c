@@ -1,7 +1,6 @@
 #include "lod/layers/format/layers_groups.h"
 
 #include "core/base/eigen.h"
-#include "core/base/radix.h"
 #include "core/base/vectors.h"
 #include "lod/layers/format/layers_axes.h"
 #include "lod/layers/format/layers_key.h"
@@ -108,7 +107,10 @@ void conic_layers_part_groups(conic_layers_grouping *g, size_t n_groups) {
   }
 }
 
-CONIC_DEFINE_ORDER(compare_groups, conic_layers_group, limit)
+static int compare_groups(const void *a, const void *b) {
+  const conic_layers_group *first = a, *second = b;
+  return (first->limit > second->limit) - (first->limit < second->limit);
+}
 
 void conic_layers_sort_groups(conic_layers_grouping *g) {
   for (size_t i = 0; i < g->n_groups; i++)
