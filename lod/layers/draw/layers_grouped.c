@@ -317,8 +317,6 @@ conic_status conic_layers_gather_groups(conic_layers *layers, const conic_layers
   g.plain.turned = NULL;
   g.n_rooms = (size_t)conic_context_threads(context);
   conic_status status = conic_layers_set_begin(layers, set);
-  if (status == CONIC_OK) /* a share of the places may be none, and is drawn, too */
-    status = conic_layers_set_reserve(layers, set, 0, 1);
   if (status == CONIC_OK)
     status = conic_memory_allocate_these(context, CONIC_ZEROED(g.rooms, g.n_rooms), CONIC_ZEROED(g.begin, g.plain.n));
   if (status == CONIC_OK)
