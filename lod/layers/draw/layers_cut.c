@@ -39,8 +39,7 @@ static void begin_walk(tree_walk *w) {
   w->n_open = 1;
 }
 
-/* Of a place of the cut, how many splats are drawn: a quarter where it may be finer below; all where it should be, but
- * may not. */
+/* Of a place of the cut, how many splats are drawn: a quarter where it may be finer below; more where it may not. */
 static void choose_groups(const tree_walk *w, verdict why, conic_layers_place *place) {
   const conic_layers_entry *entry = &w->layers->entries[place->node];
   uint32_t one_in = 4;
@@ -48,13 +47,11 @@ static void choose_groups(const tree_walk *w, verdict why, conic_layers_place *p
   place->is_grouped = 0;
   if (!conic_layers_groups(w->layers))
     return;
-  if (why == VERDICT_STUCK && !w->wish->budget) {
-    place->sight.error_px = error_on_screen(&place->sight, entry->error);
-    one_in = 1;
-  } else if (entry->child == 0 && place->sight.error_px > w->wish->error_px) {
+  if (entry->child)
+    one_in = why == VERDICT_STUCK ? 2 : 4;
+  else if (place->sight.error_px > w->wish->error_px)
     one_in = error_on_screen(&place->sight, entry->grouped[1]) > w->wish->error_px ? 1 : 2;
-  }
-  place->is_grouped = one_in > 1 || w->wish->n_root;
+  place->is_grouped = one_in > 1;
   place->n_splats = w->wish->n_root ? (uint32_t)w->wish->n_root : conic_layers_part_of(entry->n_drawn, one_in);
 }
 
