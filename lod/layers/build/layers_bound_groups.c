@@ -1,4 +1,5 @@
 /* How far the ellipses that stand for groups of a node's samples are from what full resolution draws. */
+#include "core/base/base.h"
 #include "lod/layers/build/layers_node.h"
 #include "lod/layers/format/layers_axes.h"
 #include "lod/layers/format/layers_key.h"

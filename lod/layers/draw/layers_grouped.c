@@ -1,5 +1,6 @@
 /* Places that are drawn as groups of their samples, an ellipse for each: some places at a time have all of their
  * samples gathered as they are, and these are grouped place by place. The splats come by place. */
+#include "core/base/base.h"
 #include "core/base/radix.h"
 #include "core/base/vectors.h"
 #include "core/splats/point_values.h"
@@ -156,10 +157,6 @@ static void put_group(const grouped *g, const group_room *room, const conic_laye
   conic_layers_fit_group(&room->grouping, group, room->members,
                          (g->layers->header.flags & CONIC_LAYERS_UNORIENTED) != 0, &ellipse);
   conic_layers_disc_axes(&ellipse, u, v);
-  if (set->splats.dot) {
-    set->splats.dot[k] = mean_of(g, room, group, first, g->raw.splats.dot) > 0.5f ? 1.0f : 0.0f;
-    ellipse.radius = set->splats.dot[k] != 0.0f ? ellipse.longer : ellipse.radius; /* they are round */
-  }
   for (int axis = 0; axis < 3; axis++) {
     set->splats.position[axis][k] = ellipse.center[axis];
     set->splats.tangent_u[axis][k] = u[axis] * ellipse.longer / cutoff;
@@ -169,6 +166,8 @@ static void put_group(const grouped *g, const group_room *room, const conic_laye
   }
   if (set->splats.opacity)
     set->splats.opacity[k] = mean_of(g, room, group, first, g->raw.splats.opacity);
+  if (set->splats.dot)
+    set->splats.dot[k] = mean_of(g, room, group, first, g->raw.splats.dot) > 0.5f ? 1.0f : 0.0f;
   if (set->lines)
     set->lines[k].kind = 0;
 }

@@ -1,5 +1,6 @@
 #include "lod/layers/format/layers_groups.h"
 
+#include "core/base/base.h"
 #include "core/base/eigen.h"
 #include "core/base/vectors.h"
 #include "lod/layers/format/layers_axes.h"
