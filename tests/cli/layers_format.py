@@ -125,8 +125,8 @@ def decode_attribute(attribute, streams, n):
 
 def read(path, zstd):
     data = open(path, "rb").read()
-    if data[:8] != b"CONICLP\n" or struct.unpack_from("<I", data, 8)[0] != 3:
-        fail("no .lpc of version 3")
+    if data[:8] != b"CONICLP\n" or struct.unpack_from("<I", data, 8)[0] != 2:
+        fail("no .lpc of version 2")
     n_samples, n_clouds, levels, bits = struct.unpack_from("<QIII", data, 16)
     origin = np.array(struct.unpack_from("<3d", data, 40))
     quantum, = struct.unpack_from("<d", data, 64)
@@ -147,8 +147,7 @@ def read(path, zstd):
         parent, child, n_drawn = struct.unpack_from("<3I", data, entry + 40)
         depth, = struct.unpack_from("<H", data, entry + 54)
         spacing, covering, most, error = struct.unpack_from("<4f", data, entry + 56)
-        quarter, half = struct.unpack_from("<2f", data, entry + 104)
-        growth, reach = (0, covering) if child else (1, 0)
+        growth, reach = struct.unpack_from("<2f", data, entry + 104)
         nodes.append({"first": key, "last": key + (1 << (3 * bits - depth)) - 1, "parent": parent, "child": child,
                       "samples": n_place, "drawn": n_drawn, "spacing": spacing, "covering": covering, "most": most,
                       "growth": growth, "reach": reach, "error": error})
@@ -171,8 +170,8 @@ def read(path, zstd):
                 cloud.update(decode_attribute(attribute, streams, n))
         if here != offset + n_bytes or len(keys) != n or sorted(keys) != keys:
             fail("a cloud is not as long as it says")
-        if not 0 < half <= quarter:
-            fail("more groups are farther off than fewer")
+        if child == 0 and (growth != 1 or reach != 0):
+            fail("a leaf does not draw its samples as they are")
         total += n
         cloud["key"], cloud["cloud"] = keys, [c] * n
         for name, values in cloud.items():

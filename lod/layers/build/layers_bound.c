@@ -262,8 +262,7 @@ static conic_layers_disc disc_in(const conic_layers_node *node, uint64_t key, co
   for (int axis = 0; axis < 3; axis++)
     disc.center[axis] = (float)at[axis];
   conic_layers_normal_of(facet->normal, disc.normal);
-  disc.radius = disc.longer = (float)outline_in(node, (double)conic_layers_size_of(facet->size) / quantum);
-  memset(disc.major, 0, sizeof disc.major);
+  disc.radius = (float)outline_in(node, (double)conic_layers_size_of(facet->size) / quantum);
   return disc;
 }
 
@@ -325,34 +324,23 @@ static void find_past(const bounding *b) {
 }
 
 /* How far what full resolution draws is from what is drawn, and the other way round. */
-static conic_status find_node_error(const conic_layers_plan *plan, int is_alone, bounding *b) {
-  conic_context *context = plan->context;
+static conic_status find_node_error(conic_context *context, int is_alone, bounding *b) {
   conic_layers_node *node = b->node;
-  conic_layers_node_groups groups;
-  uint32_t *numbers;
-  conic_status status =
-      conic_memory_allocate_these(context, CONIC_ROOM(numbers, node->n_drawn), CONIC_ROOM(b->discs, node->n_drawn));
-  size_t n = status == CONIC_OK ? conic_thinner_numbers(b->thinner, numbers) : 0;
-  for (size_t i = 0; i < n; i++)
-    b->discs[i] = disc_in(node, node->keys[numbers[i]], &node->facets[numbers[i]], b->quantum);
+  uint32_t *numbers = conic_memory_allocate(context, node->n_drawn, sizeof *numbers);
+  b->discs = conic_memory_allocate(context, node->n_drawn, sizeof *b->discs);
+  conic_status status = numbers && b->discs ? CONIC_OK : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK) {
+    size_t n = conic_thinner_numbers(b->thinner, numbers);
+    for (size_t i = 0; i < n; i++)
+      b->discs[i] = disc_in(node, node->keys[numbers[i]], &node->facets[numbers[i]], b->quantum);
     node->error = find_most(context, is_alone, b, node->past);
-    status = conic_layers_node_groups_begin(plan, node, &groups);
-    for (size_t i = 0; i < n && status == CONIC_OK; i++)
-      b->discs[i] = groups.ellipses[numbers[i]];
-    if (status == CONIC_OK) {
-      node->grouped[0] = find_most(context, is_alone, b, 0.0);
-      conic_layers_bound_groups(&groups);
-      status = (conic_status)atomic_load(&b->status);
-    }
-    conic_layers_node_groups_end(&groups);
+    status = (conic_status)atomic_load(&b->status);
   }
   conic_memory_release_these(context, b->discs, numbers);
   return status;
 }
 
-static conic_status find_outlines(const conic_layers_plan *plan, int is_alone, bounding *b) {
-  conic_context *context = plan->context;
+static conic_status find_outlines(conic_context *context, int is_alone, bounding *b) {
   conic_layers_node *node = b->node;
   visit_below(node, node->n_place, count_below, b);
   b->below = conic_memory_allocate(context, b->n_below, sizeof(void *));
@@ -364,7 +352,7 @@ static conic_status find_outlines(const conic_layers_plan *plan, int is_alone, b
     find_past(b);
     status = (conic_status)atomic_load(&b->status);
     if (status == CONIC_OK)
-      status = find_node_error(plan, is_alone, b);
+      status = find_node_error(context, is_alone, b);
   }
   conic_memory_release(context, (void *)b->below);
   return status;
@@ -378,7 +366,7 @@ conic_status conic_layers_bound_node(const conic_layers_plan *plan, const conic_
   atomic_init(&bounds.most, 0);
   atomic_init(&bounds.status, CONIC_OK);
   node->area = a->area + b->area;
-  conic_status status = find_outlines(plan, is_alone, &bounds);
+  conic_status status = find_outlines(plan->context, is_alone, &bounds);
   for (int axis = 0; axis < 3; axis++) {
     node->low[axis] = a->low[axis] < b->low[axis] ? a->low[axis] : b->low[axis];
     node->high[axis] = larger(a->high[axis], b->high[axis]);
@@ -410,8 +398,6 @@ void conic_layers_describe_node(const conic_layers_plan *plan, const conic_layer
   entry->growth = node->is_leaf ? 1.0f : 0.0f;
   entry->reach = node->is_leaf ? 0.0f : entry->covering;
   entry->error = node->is_leaf ? 0.0f : rounded_up((node->error + 3.0 * rounding) * q);
-  for (int i = 0; i < 2; i++)
-    entry->grouped[i] = rounded_up((node->grouped[i] * (1.0 + 1e-3) + 3.0 * rounding) * q);
   entry->sphere = rounded_up((node->sphere + node->radius + 2.0 * rounding) * q);
   double slack = 2.0 * rounding * q;
   for (int axis = 0; axis < 3; axis++) {

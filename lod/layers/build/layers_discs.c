@@ -31,28 +31,19 @@ static float error_from_one(const disc_search *p, uint32_t i_chosen, int is_turn
   return fabsf(height) + disc->radius * turn + (past > 0.0f ? past : 0.0f);
 }
 
-/* Past an ellipse, the way to where the line to its middle enters it is taken. */
-float conic_layers_error2_from(const conic_layers_disc *s, const float at[3]) {
-  float height = 0.0f, way2 = 0.0f, major = 0.0f;
-  for (int axis = 0; axis < 3; axis++) {
-    float way = at[axis] - s->center[axis];
-    height += way * s->normal[axis];
-    major += way * s->major[axis];
-    way2 += way * way;
-  }
-  float along2 = way2 - height * height, along = along2 > 0.0f ? sqrtf(along2) : 0.0f, past = along - s->radius;
-  if (past > 0.0f && s->longer > s->radius) {
-    float across2 = along2 - major * major, a = major / s->longer;
-    past = along - along / sqrtf(a * a + (across2 > 0.0f ? across2 : 0.0f) / (s->radius * s->radius));
-  }
-  return height * height + (past > 0.0f ? past * past : 0.0f);
-}
-
 /* How far a place is from the discs beside; or no more than `enough`. */
 static float error_from_nearest(const disc_search *p, const float at[3], float enough) {
   float nearest2 = HUGE_VALF, enough2 = enough > 0.0f ? enough * enough : 0.0f;
   for (size_t i = 0; i < p->n_beside && !(nearest2 <= enough2); i++) {
-    float error2 = conic_layers_error2_from(&p->chosen->discs[p->beside[i]], at);
+    const conic_layers_disc *s = &p->chosen->discs[p->beside[i]];
+    float height = 0.0f, way2 = 0.0f;
+    for (int axis = 0; axis < 3; axis++) {
+      float way = at[axis] - s->center[axis];
+      height += way * s->normal[axis];
+      way2 += way * way;
+    }
+    float along2 = way2 - height * height, past = along2 > 0.0f ? sqrtf(along2) - s->radius : 0.0f;
+    float error2 = height * height + (past > 0.0f ? past * past : 0.0f);
     nearest2 = error2 < nearest2 ? error2 : nearest2;
   }
   return sqrtf(nearest2);

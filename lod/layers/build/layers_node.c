@@ -103,15 +103,6 @@ static void keep_discs(conic_layers_node *node) {
   }
 }
 
-static conic_status group_leaf(const conic_layers_plan *plan, conic_layers_node *leaf) {
-  conic_layers_node_groups groups;
-  conic_status status = conic_layers_node_groups_begin(plan, leaf, &groups);
-  if (status == CONIC_OK)
-    conic_layers_bound_groups(&groups);
-  conic_layers_node_groups_end(&groups);
-  return status;
-}
-
 static conic_status grow_leaf(conic_layers_worker *worker, const unsigned char *samples, size_t n,
                               conic_layers_node **node) {
   conic_layers_node *leaf = create_node(worker, n);
@@ -127,8 +118,6 @@ static conic_status grow_leaf(conic_layers_worker *worker, const unsigned char *
   keep_discs(leaf); /* now with all sizes */
   for (size_t i = 0; i < n; i++)
     worker->outlines[conic_layers_drawn_at(leaf, i)->size & (CONIC_LAYERS_OUTLINES - 1)]++;
-  if (status == CONIC_OK)
-    status = group_leaf(&worker->plan, leaf);
   if (status == CONIC_OK)
     *node = leaf;
   else

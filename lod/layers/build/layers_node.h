@@ -109,7 +109,6 @@ struct conic_layers_node {
   double radius;            /* of the greatest outline with which any is drawn, in steps */
   double past;              /* how much larger one is drawn at most than at full resolution, in steps */
   double error;             /* how far what full resolution draws is from what is drawn, in steps */
-  double grouped[2];        /* the same where a quarter and, of a leaf, half as many groups of samples are drawn */
   double low[3], high[3];   /* box of its place's samples, in steps */
   double center[3], sphere; /* of these, in steps */
   double axis[3], cone;
@@ -149,29 +148,6 @@ conic_status conic_layers_bound_leaf(const conic_layers_plan *plan, conic_layers
  * use all threads, so the caller is not inside a task. Errors: MEMORY, IO. */
 conic_status conic_layers_bound_node(const conic_layers_plan *plan, const conic_thinner *thinner, int is_alone,
                                      conic_layers_node *node);
-
-/* A node's samples in groups, as they are drawn; lengths in steps. */
-typedef struct conic_layers_node_groups {
-  const conic_layers_plan *plan;
-  conic_layers_node *node;
-  conic_layers_disc *members, *own; /* each in its group, and as full resolution draws it */
-  conic_layers_disc *ellipses;      /* of each one's group */
-  conic_layers_disc *finer;         /* what full resolution draws of the children's samples; of a leaf, `own` again */
-  size_t n_finer;
-  float (*boxes)[6]; /* low and high corner of each CONIC_LAYERS_BOXED of these, which lie together */
-  conic_layers_grouping grouping;
-} conic_layers_node_groups;
-
-enum { CONIC_LAYERS_BOXED = 32 };
-
-/* Parts a node's samples into a quarter as many groups. The ellipses' outlines join the node's. Errors: MEMORY, IO. */
-conic_status conic_layers_node_groups_begin(const conic_layers_plan *plan, conic_layers_node *node,
-                                            conic_layers_node_groups *groups);
-void conic_layers_node_groups_end(conic_layers_node_groups *groups);
-
-/* Raises the node's errors to how far ellipses are past what full resolution draws; of a leaf, also to how high its
- * samples reach over them. Then there are half as many groups. */
-void conic_layers_bound_groups(conic_layers_node_groups *groups);
 
 /* Fills in the entry's members that follow from the node; lengths are rounded up. */
 void conic_layers_describe_node(const conic_layers_plan *plan, const conic_layers_node *node,

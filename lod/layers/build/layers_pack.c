@@ -62,10 +62,10 @@ typedef struct unpacking {
 } unpacking;
 
 static int are_numbers_sound(const conic_layers_node *b) {
-  const double *numbers[] = {&b->area,    &b->distance,   &b->covering, &b->radius,    &b->past,      &b->error,
-                             b->grouped,  b->grouped + 1, b->low,       b->low + 1,    b->low + 2,    b->high,
-                             b->high + 1, b->high + 2,    b->center,    b->center + 1, b->center + 2, &b->sphere,
-                             b->axis,     b->axis + 1,    b->axis + 2,  &b->cone};
+  const double *numbers[] = {&b->area,    &b->distance, &b->covering, &b->radius,    &b->past,
+                             &b->error,   b->low,       b->low + 1,   b->low + 2,    b->high,
+                             b->high + 1, b->high + 2,  b->center,    b->center + 1, b->center + 2,
+                             &b->sphere,  b->axis,      b->axis + 1,  b->axis + 2,   &b->cone};
   for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
     if (!(fabs(*numbers[i]) < 1e15))
       return 0;

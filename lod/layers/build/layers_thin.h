@@ -3,7 +3,6 @@
 #pragma once
 
 #include "core/base/base.h"
-#include "lod/layers/format/layers_groups.h"
 
 /* A set of points in a grid of cells, and room for what choosing them needs; each thread has its own. Coordinates are
  * steps of the file's grid, below 2²¹, and so are lengths. */
@@ -37,8 +36,12 @@ size_t conic_thinner_numbers(const conic_thinner *thinner, uint32_t *numbers);
 
 /* --- how far full resolution is from the discs that stand for it (layers_discs.c) --- */
 
-/* The discs of the points that a thinner has chosen, in the order in which they were, or the ellipses of the groups
- * that they are in; lengths in steps of the grid. Several threads may look. */
+/* A sample as it is drawn; lengths in steps of the grid. */
+typedef struct conic_layers_disc {
+  float center[3], normal[3], radius;
+} conic_layers_disc;
+
+/* The discs of the points that a thinner has chosen, in the order in which they were; several threads may look. */
 typedef struct conic_layers_chosen {
   const conic_thinner *thinner;
   const conic_layers_disc *discs;
@@ -49,6 +52,3 @@ typedef struct conic_layers_chosen {
  * places around it. The greatest of several sets is the same in whichever order they come. */
 double conic_layers_disc_error(const conic_layers_chosen *chosen, const conic_layers_disc *discs, size_t n,
                                double beyond, double error);
-
-/* The square of how far a place is from a disc or an ellipse, or more. */
-float conic_layers_error2_from(const conic_layers_disc *disc, const float at[3]);

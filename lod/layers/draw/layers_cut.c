@@ -1,6 +1,5 @@
 #include "lod/layers/draw/layers_cut.h"
 
-#include "lod/layers/format/layers_groups.h"
 #include "lod/planner/plan.h"
 
 /* A walk down the tree: what is yet to be looked at. Each level adds one node at most, of an octree seven. */
@@ -16,14 +15,8 @@ typedef struct tree_walk {
 /* Why a node is not refined. */
 typedef enum verdict { VERDICT_REFINE, VERDICT_FINE, VERDICT_STUCK } verdict;
 
-static double error_on_screen(const conic_layers_sight *sight, float error) {
-  return error > 0.0f ? sight->px_a_length * (double)error : 0.0;
-}
-
-static verdict judge_node(const tree_walk *w, const conic_layers_entry *entry, conic_layers_sight *sight) {
+static verdict judge_node(const tree_walk *w, const conic_layers_entry *entry, const conic_layers_sight *sight) {
   const unsigned char *is_in = w->wish->is_in;
-  if (conic_layers_groups(w->layers))
-    sight->error_px = error_on_screen(sight, entry->grouped[0]);
   if (entry->child == 0 || sight->error_px <= w->wish->error_px)
     return VERDICT_FINE;
   if (w->wish->most_levels && entry->level + 1 >= w->wish->most_levels)
@@ -39,31 +32,14 @@ static void begin_walk(tree_walk *w) {
   w->n_open = 1;
 }
 
-/* Of a place of the cut, how many splats are drawn: a quarter where it may be finer below; more where it may not. */
-static void choose_groups(const tree_walk *w, verdict why, conic_layers_place *place) {
-  const conic_layers_entry *entry = &w->layers->entries[place->node];
-  uint32_t one_in = 4;
-  place->n_splats = entry->n_drawn;
-  place->is_grouped = 0;
-  if (!conic_layers_groups(w->layers))
-    return;
-  if (entry->child)
-    one_in = why == VERDICT_STUCK ? 2 : 4;
-  else if (place->sight.error_px > w->wish->error_px)
-    one_in = error_on_screen(&place->sight, entry->grouped[1]) > w->wish->error_px ? 1 : 2;
-  place->is_grouped = one_in > 1;
-  place->n_splats = w->wish->n_root ? (uint32_t)w->wish->n_root : conic_layers_part_of(entry->n_drawn, one_in);
-}
-
 /* The next node of the cut: 1, or 0 at the end. */
-static int next_place(tree_walk *w, conic_layers_place *place, verdict *why) {
+static int next_place(tree_walk *w, uint32_t *node, conic_layers_sight *sight, verdict *why) {
   while (w->n_open > 0) {
-    place->node = w->open[--w->n_open];
-    const conic_layers_entry *entry = &w->layers->entries[place->node];
-    if (!conic_layers_look(w->view, entry, &place->sight))
+    *node = w->open[--w->n_open];
+    const conic_layers_entry *entry = &w->layers->entries[*node];
+    if (!conic_layers_look(w->view, entry, sight))
       continue;
-    *why = judge_node(w, entry, &place->sight);
-    choose_groups(w, *why, place);
+    *why = judge_node(w, entry, sight);
     if (*why != VERDICT_REFINE)
       return 1;
     for (uint32_t i = conic_layers_children(w->layers); i-- > 0;)
@@ -83,25 +59,6 @@ static conic_status find_turned(const conic_layers *layers, const conic_layers_v
   return CONIC_OK;
 }
 
-/* Parts groups further, evenly, until there are as many splats as there may be; not beyond what the error was found
- * for. */
-static void part_more(const conic_layers *layers, uint64_t budget, conic_layers_cut *cut) {
-  uint64_t n_grouped = 0, n_spare = budget > cut->n_splats ? budget - cut->n_splats : 0;
-  for (size_t i = 0; i < cut->n; i++)
-    n_grouped += cut->places[i].is_grouped ? cut->places[i].n_splats : 0;
-  for (size_t i = 0; i < cut->n && n_spare > 0; i++) {
-    conic_layers_place *place = &cut->places[i];
-    if (!place->is_grouped)
-      continue;
-    uint32_t n_drawn = layers->entries[place->node].n_drawn, half = conic_layers_part_of(n_drawn, 2);
-    uint64_t n = place->n_splats + place->n_splats * n_spare / n_grouped,
-             most = place->n_splats < half ? half : n_drawn;
-    n = n < most ? n : most;
-    cut->n_splats += n - place->n_splats;
-    place->n_splats = (uint32_t)n;
-  }
-}
-
 conic_status conic_layers_find_cut(const conic_layers *layers, const conic_layers_view *view,
                                    const conic_layers_wish *wish, conic_layers_cut *cut) {
   tree_walk w = {.layers = layers, .view = view, .wish = wish};
@@ -110,22 +67,19 @@ conic_status conic_layers_find_cut(const conic_layers *layers, const conic_layer
   cut->n = 0;
   cut->n_splats = cut->n_coarser = 0;
   cut->coarser_px = 0.0;
-  cut->n_root = conic_layers_groups(layers) ? 0 : wish->n_root;
-  cut->is_grouped = 0;
+  cut->n_root = wish->n_root;
   memset(&place, 0, sizeof place);
   begin_walk(&w);
-  while (next_place(&w, &place, &why)) {
+  while (next_place(&w, &place.node, &place.sight, &why)) {
     conic_status status = conic_memory_append(layers->context, &cut->places, &cut->n, &cut->room, &place, sizeof place);
     if (status != CONIC_OK)
       return status;
-    cut->n_splats += place.n_splats;
-    cut->is_grouped |= place.is_grouped;
+    cut->n_splats += layers->entries[place.node].n_drawn;
     if (why != VERDICT_STUCK)
       continue;
     cut->n_coarser++;
     cut->coarser_px = place.sight.error_px > cut->coarser_px ? place.sight.error_px : cut->coarser_px;
   }
-  part_more(layers, wish->budget, cut);
   return find_turned(layers, view, cut);
 }
 
@@ -148,11 +102,6 @@ typedef struct budget_place {
   size_t i_opening; /* of the node above; SIZE_MAX: none */
 } budget_place;
 
-/* So many splats are drawn of a place at least. */
-static uint32_t least_of(const conic_layers *layers, const conic_layers_entry *entry) {
-  return conic_layers_groups(layers) ? conic_layers_part_of(entry->n_drawn, 4) : entry->n_drawn;
-}
-
 static size_t open_places(const void *data, double low_px, conic_plan_opening *openings, uint64_t *n_first) {
   const layers_opening *o = data;
   const conic_layers *layers = o->layers;
@@ -167,24 +116,16 @@ static size_t open_places(const void *data, double low_px, conic_plan_opening *o
     conic_layers_sight sight;
     if (!conic_layers_look(o->view, entry, &sight))
       continue;
-    int64_t n_coarsest = least_of(layers, entry);
     if (place.i_opening == SIZE_MAX)
-      *n_first = (uint64_t)n_coarsest;
+      *n_first = entry->n_drawn;
     else
-      openings[place.i_opening].change += n_coarsest;
-    int is_fine = judge_node(&w, entry, &sight) != VERDICT_REFINE;
-    double px = sight.error_px < place.px ? sight.error_px : place.px;
-    if (entry->child == 0 && conic_layers_groups(layers) && px > low_px) {
-      int64_t half = conic_layers_part_of(entry->n_drawn, 2);
-      double half_px = error_on_screen(&sight, entry->grouped[1]);
-      openings[n++] = (conic_plan_opening){px, half - n_coarsest};
-      openings[n++] = (conic_plan_opening){half_px < px ? half_px : px, (int64_t)entry->n_drawn - half};
-    }
-    if (is_fine)
+      openings[place.i_opening].change += entry->n_drawn;
+    if (judge_node(&w, entry, &sight) != VERDICT_REFINE)
       continue;
+    double px = sight.error_px < place.px ? sight.error_px : place.px;
     for (uint32_t i = conic_layers_children(layers); i-- > 0;)
       open[n_open++] = (budget_place){entry->child + i, px, n};
-    openings[n++] = (conic_plan_opening){px, -n_coarsest};
+    openings[n++] = (conic_plan_opening){px, -(int64_t)entry->n_drawn};
   }
   return n;
 }
@@ -192,11 +133,9 @@ static size_t open_places(const void *data, double low_px, conic_plan_opening *o
 conic_status conic_layers_fit_budget(const conic_layers *layers, const conic_layers_view *view, int most_levels,
                                      uint64_t budget, double *error_px, uint64_t *n_root) {
   const layers_opening opening = {layers, view, most_levels};
-  const conic_plan_tree tree = {&opening, 2 * (size_t)layers->header.n_clouds,
-                                open_places}; /* a leaf gives way twice */
+  const conic_plan_tree tree = {&opening, layers->header.n_clouds, open_places};
   conic_status status = conic_plan_fit_tree(layers->context, &tree, budget, error_px);
-  *n_root =
-      status == CONIC_OK && !(*error_px < HUGE_VAL) && least_of(layers, &layers->entries[0]) > budget ? budget : 0;
+  *n_root = status == CONIC_OK && !(*error_px < HUGE_VAL) && layers->entries[0].n_drawn > budget ? budget : 0;
   return status;
 }
 

@@ -19,8 +19,6 @@ typedef enum conic_place_state {
 
 typedef struct conic_layers_place {
   uint32_t node;
-  uint32_t n_splats; /* are drawn of it: */
-  int is_grouped;    /* so many groups of its samples; else these, as they are */
   conic_place_state state;
   double offset;
   conic_layers_sight sight;
@@ -41,7 +39,6 @@ typedef struct conic_layers_cut {
   uint64_t n_coarser; /* places that were to be finer */
   double coarser_px;  /* the greatest error among them */
   uint64_t n_root;    /* so many samples are drawn where the root is the only place; 0: all of them */
-  int is_grouped;     /* some place is */
 } conic_layers_cut;
 
 typedef struct conic_layers_wish {
@@ -49,7 +46,6 @@ typedef struct conic_layers_wish {
   int most_levels;            /* 0: all */
   const unsigned char *is_in; /* a cloud: whether it can be used; null: all can */
   uint64_t n_root;            /* as in a cut */
-  uint64_t budget;            /* splats that there may be; groups become smaller until there are; 0: they do not */
 } conic_layers_wish;
 
 /* Finds the cut. On the way down from the root it takes, of what is in sight, the first node whose error is at most the

@@ -45,11 +45,8 @@ static const char *what_of_draw_is_wrong(const conic_camera *camera, const conic
 }
 
 static conic_status choose_clouds(conic_layers_picture *d, const unsigned char *is_in) {
-  conic_layers_wish wish = {.error_px = d->drawn.error_px,
-                            .most_levels = d->options.most_levels,
-                            .is_in = is_in,
-                            .n_root = d->n_root,
-                            .budget = d->options.budget};
+  conic_layers_wish wish = {
+      .error_px = d->drawn.error_px, .most_levels = d->options.most_levels, .is_in = is_in, .n_root = d->n_root};
   return conic_layers_find_cut(d->layers, &d->view, &wish, &d->cut);
 }
 
@@ -143,7 +140,7 @@ static void count_up(conic_layers_picture *d, const conic_render_statistics *sta
     const conic_layers_place *place = &d->cut.places[i];
     drawn->n_places_hidden += place->state == CONIC_PLACE_HIDDEN;
     drawn->n_places_grazing += place->state == CONIC_PLACE_GRAZING;
-    n_splats += place->n_splats;
+    n_splats += d->layers->entries[place->node].n_drawn;
   }
   drawn->n_clouds_grazing = conic_layers_needed(d->layers, &d->cut, CONIC_PLACE_SHOWN, d->needed);
   drawn->n_clouds = conic_layers_needed(d->layers, &d->cut, CONIC_PLACE_GRAZING, d->needed);
@@ -432,7 +429,7 @@ void conic_layers_picture_weigh(const conic_layers_picture *d, const conic_windo
   for (size_t i = 0; i < d->cut.n; i++) {
     const conic_window *pixels = &d->cut.places[i].sight.pixels;
     double area = (double)(pixels->x_end - pixels->x_begin) * (double)(pixels->y_end - pixels->y_begin);
-    double weight = conic_layers_place_weight(&d->cut.places[i]) / area;
+    double weight = conic_layers_place_weight(d->layers, &d->cut.places[i]) / area;
     for (size_t k = find_window_at(list, n, pixels->y_begin); k < n && list[k].y_begin < pixels->y_end; k++) {
       conic_window in = conic_window_meet(pixels, &list[k]);
       if (in.x_begin < in.x_end && in.y_begin < in.y_end)

@@ -2,7 +2,6 @@
 
 #include "core/splats/point_values.h"
 #include "lod/layers/draw/layers_octree.h"
-#include "lod/layers/format/layers_groups.h"
 
 /* Pieces are small: so many make a task. */
 enum { PIECES_A_TASK = 16 };
@@ -170,7 +169,6 @@ typedef struct splat_copying {
   uint32_t *restrict to_id;
   float most;        /* no outline is larger, */
   float growth;      /* but for this, where not all of the root's samples are drawn */
-  int is_member;     /* of a group */
   const double *eye; /* from the origin; null: nobody looks */
   const conic_layers *layers;
   const uint64_t *keys;
@@ -199,7 +197,6 @@ static splat_copying begin_copy(const gather *g, const conic_layers_piece *piece
                      .to_id = g->set->ids + at,
                      .most = is_from_above ? conic_layers_octree_outline(g->layers, node) : INFINITY,
                      .growth = growth_of(g, cloud),
-                     .is_member = g->asked->is_for_groups,
                      .eye = g->asked->view ? g->asked->view->from.eye : NULL,
                      .layers = g->layers,
                      .keys = cloud->keys + from,
@@ -246,9 +243,7 @@ static inline void set_axes(const splat_copying *c, size_t i, size_t k, float si
 }
 
 static inline float drawn_sigma(const splat_copying *c, size_t i) {
-  float own = c->outline ? c->outline[i] : 0.0f, outline = conic_layers_outline(c->entry, own);
-  if (c->is_member)
-    outline = conic_layers_member_radius(own, c->entry->reach);
+  float outline = conic_layers_outline(c->entry, c->outline ? c->outline[i] : 0.0f);
   return c->growth * (outline < c->most ? outline : c->most) / c->cutoff;
 }
 
@@ -379,6 +374,14 @@ static conic_status take_pieces(gather *g) {
   return CONIC_OK;
 }
 
+/* Turns the set's dots to the camera. */
+static conic_status face_dots(const gather *g) {
+  conic_splats *splats = &g->set->splats;
+  if (!splats->dot || !g->asked->camera || splats->count == 0)
+    return CONIC_OK;
+  return conic_splats_face(g->layers->context, splats, g->asked->camera, splats->tangent_u, splats->tangent_v);
+}
+
 /* How many of the first clouds are taken together. */
 static size_t clouds_together(const gather *g, const uint32_t *clouds, size_t n) {
   const conic_layers *layers = g->layers;
@@ -393,7 +396,7 @@ static size_t clouds_together(const gather *g, const uint32_t *clouds, size_t n)
 
 /* Hands over what there is. */
 static conic_status hand_over(gather *g) {
-  conic_status status = conic_layers_set_face(g->layers, g->set, g->asked->camera);
+  conic_status status = face_dots(g);
   if (status == CONIC_OK)
     status = g->asked->receive(g->asked->cookie, g->set);
   g->set->splats.count = 0;
@@ -452,8 +455,6 @@ static conic_status gather_clouds(gather *g) {
 
 conic_status conic_layers_gather(conic_layers *layers, const conic_layers_gathering *gathering, conic_layers_set *set) {
   gather g = {.layers = layers, .asked = gathering, .set = set};
-  if (gathering->cut->is_grouped)
-    return conic_layers_gather_groups(layers, gathering, set);
   conic_status status = conic_layers_set_begin(layers, set);
   if (status == CONIC_OK)
     status = conic_layers_set_reserve(layers, set, 0, expect(&g));
@@ -469,6 +470,6 @@ conic_status conic_layers_gather(conic_layers *layers, const conic_layers_gather
     return status;
   if (set->named)
     set->named->count = set->splats.count;
-  status = conic_layers_set_face(layers, set, gathering->camera);
+  status = face_dots(&g);
   return status == CONIC_OK ? conic_layers_set_list_lines(layers, set) : status;
 }

@@ -46,9 +46,6 @@ conic_status conic_layers_set_reserve(const conic_layers *layers, conic_layers_s
 /* Makes records of the splats' clip lines, now that all splats are there. Errors: MEMORY. */
 conic_status conic_layers_set_list_lines(const conic_layers *layers, conic_layers_set *set);
 
-/* Turns the set's dots to the camera; null: to none. Errors: MEMORY. */
-conic_status conic_layers_set_face(const conic_layers *layers, conic_layers_set *set, const conic_camera *camera);
-
 void conic_layers_set_release(conic_context *context, conic_layers_set *set);
 
 typedef conic_status conic_layers_set_receiver(void *cookie, conic_layers_set *set);
@@ -64,7 +61,6 @@ typedef struct conic_layers_gathering {
   int takes_counted;                  /* also takes all of the places that is_counted tells of */
   float cutoff;
   const conic_camera *camera; /* to which dots are turned; null: they are left as they are */
-  int is_for_groups;          /* samples become members of groups */
   double until_s;             /* by conic_seconds_now; infinite: clouds are waited for */
   /* Takes what is gathered, part by part, with the pieces that it came from; clip lines are not listed yet. Null: all
    * is gathered at once. */
@@ -83,10 +79,6 @@ double conic_layers_share_of_place(const conic_layers_gathering *gathering, uint
  * is read once, in the order of the file, and no more at a time than the cache holds. Errors: as
  * conic_layers_store_load, and the receiver's. */
 conic_status conic_layers_gather(conic_layers *layers, const conic_layers_gathering *gathering, conic_layers_set *set);
-
-/* The same of a cut some of whose places are grouped. */
-conic_status conic_layers_gather_groups(conic_layers *layers, const conic_layers_gathering *gathering,
-                                        conic_layers_set *set);
 
 /* Fills the layers' own set, which *set becomes, with the samples that conic_layers_read_samples gives for a part, and
  * with those beside it that reach into it. All come at once, in the order of the file, with the dots as they are. Where

@@ -96,7 +96,7 @@ static conic_status draw_chosen(hiding *h, size_t n_chosen) {
 
 static uint64_t splats_of(const hiding *h, size_t i) {
   const conic_layers_place *place = &h->cut->places[h->by_depth[i]];
-  return place->state == CONIC_PLACE_SHOWN ? place->n_splats : 0;
+  return place->state == CONIC_PLACE_SHOWN ? h->layers->entries[place->node].n_drawn : 0;
 }
 
 /* Looks at the places from `begin` on again. Returns how many splats of them are shown. */

@@ -38,11 +38,6 @@ static inline uint32_t conic_layers_children(const conic_layers *layers) {
   return layers->octree ? 8 : 2;
 }
 
-/* Whether places are drawn as groups of their samples. What is left out tells nothing of a group. */
-static inline int conic_layers_groups(const conic_layers *layers) {
-  return layers->header.version >= 3 && !layers->octree && !layers->choice.filter;
-}
-
 /* Whether a cloud is in memory, or empty. */
 static inline int conic_layers_has_cloud(const conic_layers *layers, uint32_t cloud) {
   return layers->store.slots[cloud].cloud || layers->entries[cloud].n_samples == 0;

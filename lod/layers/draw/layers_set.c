@@ -10,13 +10,6 @@ void conic_layers_set_release(conic_context *context, conic_layers_set *set) {
   memset(set, 0, sizeof *set);
 }
 
-conic_status conic_layers_set_face(const conic_layers *layers, conic_layers_set *set, const conic_camera *camera) {
-  conic_splats *splats = &set->splats;
-  if (!splats->dot || !camera || splats->count == 0)
-    return CONIC_OK;
-  return conic_splats_face(layers->context, splats, camera, splats->tangent_u, splats->tangent_v);
-}
-
 /* Which optional arrays the splats have. */
 static int splats_have(const conic_layers *layers, conic_layers_kind kind) {
   return conic_layers_schema_find(&layers->header.schema, kind) >= 0;

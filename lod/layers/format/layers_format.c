@@ -40,10 +40,10 @@ static const conic_file_field header_fields[] = {IN_HEADER(version),
                                                  IN_HEADER(up)};
 
 static const conic_file_field entry_fields[] = {
-    IN_ENTRY(key),       IN_ENTRY(offset),  IN_ENTRY(sum),      IN_ENTRY(n_place), IN_ENTRY(n_bytes),
-    IN_ENTRY(n_samples), IN_ENTRY(parent),  IN_ENTRY(child),    IN_ENTRY(n_drawn), IN_ENTRY(level),
-    IN_ENTRY(depth),     IN_ENTRY(spacing), IN_ENTRY(covering), IN_ENTRY(radius),  IN_ENTRY(error),
-    IN_ENTRY(center),    IN_ENTRY(sphere),  IN_ENTRY(axis),     IN_ENTRY(cone),    IN_ENTRY(grouped)};
+    IN_ENTRY(key),      IN_ENTRY(offset), IN_ENTRY(sum),     IN_ENTRY(n_place), IN_ENTRY(n_bytes), IN_ENTRY(n_samples),
+    IN_ENTRY(parent),   IN_ENTRY(child),  IN_ENTRY(n_drawn), IN_ENTRY(level),   IN_ENTRY(depth),   IN_ENTRY(spacing),
+    IN_ENTRY(covering), IN_ENTRY(radius), IN_ENTRY(error),   IN_ENTRY(center),  IN_ENTRY(sphere),  IN_ENTRY(axis),
+    IN_ENTRY(cone),     IN_ENTRY(growth), IN_ENTRY(reach)};
 
 #define IN_ATTRIBUTE(member) CONIC_FILE_FIELD(conic_layers_attribute, member)
 
@@ -160,8 +160,8 @@ int conic_layers_is_file(const char *path) {
 
 /* The numbers that one entry states, each by itself. */
 static const char *check_entry(const conic_layers_header *header, const conic_layers_entry *entry) {
-  const float lengths[] = {entry->spacing, entry->covering, entry->radius,     entry->error,     entry->sphere,
-                           entry->growth,  entry->reach,    entry->grouped[0], entry->grouped[1]};
+  const float lengths[] = {entry->spacing, entry->covering, entry->radius, entry->error,
+                           entry->sphere,  entry->growth,   entry->reach};
   uint64_t n_keys_bits = 3 * (uint64_t)header->bits;
   if (entry->depth > n_keys_bits || entry->level >= header->n_levels)
     return "its depth or level is out of range";
@@ -269,23 +269,16 @@ static conic_status read_attribute_table(conic_context *context, const char *nam
                : CONIC_OK;
 }
 
-/* An entry of version 1 has one outline for all samples, and of version 2 it states how they grow. */
+/* An entry of version 1 has one outline for all samples. */
 static int read_entry(const conic_layers_header *header, const unsigned char *bytes, conic_layers_entry *entry) {
   size_t used = conic_file_fields_bytes(entry_fields, N_ENTRY_FIELDS);
   conic_file_fields_read(entry_fields, N_ENTRY_FIELDS, bytes, entry);
   int is_zeroed = is_zero(bytes + used, CONIC_LAYERS_ENTRY_BYTES - used);
   if (header->version == 1) {
     is_zeroed = is_zero(bytes + used - 8, CONIC_LAYERS_ENTRY_BYTES - used + 8);
+    entry->growth = 0.0f;
     entry->reach = entry->radius;
-  } else if (header->version == 2) {
-    entry->growth = entry->grouped[0];
-    entry->reach = entry->grouped[1];
-  } else {
-    entry->growth = entry->child ? 0.0f : 1.0f;
-    entry->reach = entry->child ? entry->covering : 0.0f;
   }
-  if (header->version < 3)
-    memset(entry->grouped, 0, sizeof entry->grouped);
   return is_zeroed;
 }
 

@@ -6,7 +6,7 @@
 #include "lod/layers/format/layers_schema.h"
 
 enum {
-  CONIC_LAYERS_VERSION = 3, /* that is written; 1 and 2 are read too */
+  CONIC_LAYERS_VERSION = 2, /* that is written; 1 is read too */
   CONIC_LAYERS_HEADER_BYTES = 256,
   CONIC_LAYERS_ENTRY_BYTES = 112
 };
@@ -61,7 +61,6 @@ typedef struct conic_layers_entry {
   float center[3], sphere; /* holds every sample of its place with its outline, at this and every finer level; from the
                               origin */
   float axis[3], cone;     /* unit; the least cosine of a normal of its place to it; -1: no bound */
-  float grouped[2];        /* the error where a quarter as many groups of T are drawn and, of a leaf, half as many */
   float growth, reach; /* a sample of T is drawn as large as it is itself, or as reach + growth × its own outline where
                           that is more, up to the radius */
 } conic_layers_entry;

@@ -61,7 +61,7 @@ int main(void) {
     n_read += i > 1 ? p.n_read : 0;
     n_late += i > 1 ? p.n_read - p.n_ahead : 0;
   }
-  CHECK(n_read > 10 && n_late == 0); /* two pictures show where a path goes */
+  CHECK(n_read > 20 && n_late == 0); /* two pictures show where a path goes */
   fprintf(stderr, "%d pictures in %.0f ms, %.0f of transfer alone\n", N_FRAMES,
           (double)(http_now_us() - start_us) / 1e3, (double)n_received * 8e-5);
   draw_far_and_near(&p, 240.0); /* elsewhere, while something else is under way */

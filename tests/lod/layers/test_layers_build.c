@@ -135,9 +135,10 @@ static void check_node(const layers_all *all, uint32_t i_node) {
   CHECK(n_place == entry->n_place && n_drawn == entry->n_drawn);
   CHECK(n_bare == 0 && n_outside == 0 && n_turned == 0);
   CHECK(entry->child || n_place == n_drawn);
-  if (entry->child) { /* as far as a sample stands for others, or as large as it is itself */
+  if (entry->child) { /* as far as a sample stands for others, or as large as it is itself; and no larger */
     float below = fmaxf(all->view.entries[entry->child].radius, all->view.entries[entry->child + 1].radius);
     CHECK(entry->radius >= entry->covering && entry->radius >= below);
+    CHECK(entry->radius <= 1.0001f * fmaxf(entry->covering, below));
   }
   CHECK(entry->child ? entry->error > 0.0f : entry->error == 0.0f);
   free(place);
