@@ -10,6 +10,13 @@ enum { CHUNK = 16, FANS = 64, CHUNKS_A_REPORT = 256 };
 /* If the caller sets no hole, circles up to this many h are none: the outlines of splats close them. */
 static const double HOLE = 1.25;
 
+/* A neighbour farther away than this many of its own h is joined to a stray point, whose h says nothing of the surface:
+ * h changes by less between neighbours of a scan. */
+static const double FARTHEST = 16.0;
+
+/* Where strays are joined to each other, the set's median h is left to tell; this many of it are no gap. */
+static const double FARTHEST_OF_ALL = 1024.0;
+
 /* The least cosine between the normals of a triangle and of a corner for which the triangle can stand for the
  * surface. */
 static const double LEAST_AGREEMENT = 0.5;
@@ -62,17 +69,38 @@ static size_t first_slot_of_leaves(const void *data, size_t i_item) {
 
 /* --- triangles of neighbours --- */
 
+/* Takes triangles out whose corners are too far away for the neighbours' h. */
+static void leave_strays_out(const conic_surface *surface, uint32_t slot, conic_fan *fan) {
+  double at[3];
+  int n = 0;
+  conic_vector_at(surface->tree.position, slot, at);
+  for (int i = 0; i < fan->n; i++) {
+    int is_near = 1;
+    for (int k = 0; k < 2; k++) {
+      uint32_t other = fan->pairs[i][k];
+      double most = FARTHEST * (double)surface->h[other];
+      is_near &= conic_neighbours_distance2(&surface->tree, other, at) <= most * most;
+    }
+    if (is_near)
+      memcpy(fan->pairs[n++], fan->pairs[i], sizeof fan->pairs[0]);
+  }
+  fan->n = n;
+}
+
 static void find_fans(void *data, size_t i_item) {
   triangle_search *search = data;
   const conic_surface *surface = search->found->surface;
   for (size_t slot = i_item * FANS; slot < (i_item + 1) * FANS && slot < surface->tree.n_slots; slot++) {
-    double most = search->options->hole > 0.0 ? search->options->hole : HOLE * (double)surface->h[slot], normal[3];
+    double widest = FARTHEST_OF_ALL * (double)surface->median_h, own = HOLE * (double)surface->h[slot], normal[3];
+    double most = search->options->hole > 0.0 ? search->options->hole : own < widest ? own : widest;
     for (int axis = 0; axis < 3; axis++)
       normal[axis] = (double)search->found->normals[slot][axis];
     search->fans[slot].n = 0;
     if (conic_normalize(normal) && most > 0.0)
       conic_fan_find(&surface->tree, surface->normal[0] ? surface->normal : NULL, (uint32_t)slot, normal, most,
                      &search->fans[slot]);
+    if (!(search->options->hole > 0.0))
+      leave_strays_out(surface, (uint32_t)slot, &search->fans[slot]);
   }
 }
 

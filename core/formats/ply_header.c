@@ -19,7 +19,7 @@ static const type_description types[] = {
     [CONIC_PLY_DOUBLE] = {{"double", "float64"}, 8, 0.0, 0.0},
 };
 
-enum { N_TYPES = sizeof types / sizeof *types, WORDS_PER_LINE = 5, WORD_ROOM = 128 };
+enum { N_TYPES = sizeof types / sizeof *types, WORDS_PER_LINE = 5, WORD_ROOM = 128, MOST_ELEMENTS = 1024 };
 
 /* One line of the header: its first words, cut to WORD_ROOM, and the number of all words. */
 typedef struct header_line {
@@ -195,6 +195,8 @@ static conic_status parse_element(conic_input *input, const header_line *line, c
   if (line->n_words != 3 || !parse_count(line->words[2], &element.count))
     return wrong_header(input, line, "an element line is 'element NAME COUNT'", NULL);
   copy_word(element.name, sizeof element.name, line->words[1], strlen(line->words[1]));
+  if (header->n_elements == MOST_ELEMENTS) /* each name is compared with all before it */
+    return wrong_header(input, line, "there are too many elements, with", element.name);
   if (conic_ply_find_element(header, element.name))
     return wrong_header(input, line, "a second element", element.name);
   return conic_memory_append(input->context, &header->elements, &header->n_elements, &header->element_capacity,

@@ -113,6 +113,19 @@ static inline uint32_t conic_simplifier_after(const conic_simplifier *s, uint32_
   return conic_simplifier_living(s, s->triangles[slot / 3].next[slot % 3]);
 }
 
+/* Vertices of scans have some six triangles; the middle of a fan may have thousands until its rim has become simpler.
+ * What is done for each pair or triple of a vertex's triangles is not done for more than this: such vertices stay,
+ * nothing is drawn onto them, and of what lies about them so many are looked at. */
+enum { CONIC_SIMPLIFIER_MANY = 128 };
+
+static inline int conic_simplifier_has_many(const conic_simplifier *s, uint32_t v) {
+  int n = 0;
+  for (uint32_t slot = conic_simplifier_living(s, s->vertices[v].ring);
+       slot != CONIC_NONE && n <= CONIC_SIMPLIFIER_MANY; slot = conic_simplifier_after(s, slot))
+    n++;
+  return n > CONIC_SIMPLIFIER_MANY;
+}
+
 static inline int conic_simplifier_has(const conic_simplifier_triangle *t, uint32_t v) {
   return t->corners[0] == v || t->corners[1] == v || t->corners[2] == v;
 }

@@ -41,6 +41,14 @@ static void prune_ring(conic_simplifier *s, uint32_t v) {
   *link = CONIC_NONE;
 }
 
+/* Makes a ring begin with two living triangles: walks of its beginning stay short, however long it is. */
+static void trim_ring(conic_simplifier *s, uint32_t v) {
+  uint32_t first = conic_simplifier_living(s, s->vertices[v].ring);
+  s->vertices[v].ring = first;
+  if (first != CONIC_NONE)
+    s->triangles[first / 3].next[first % 3] = conic_simplifier_after(s, first);
+}
+
 /* Notes of a vertex between two clusters that it is there up to the last stage that was taken. */
 static void leave_slot(conic_simplifier *s, uint32_t u) {
   uint32_t slot = s->chains->of_vertex[s->mesh->adjacency->place[s->vertices[u].original]];
@@ -64,6 +72,9 @@ static void draw_together(conic_simplifier *s, uint32_t u, uint32_t v) {
     uint32_t following = conic_simplifier_after(s, slot);
     if (conic_simplifier_has(t, v)) {
       t->is_alive = 0;
+      for (int corner = 0; corner < 3; corner++)
+        if (t->corners[corner] != u)
+          trim_ring(s, t->corners[corner]);
       s->alive[t->cluster]--;
       s->n_alive--;
     } else {

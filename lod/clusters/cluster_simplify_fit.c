@@ -235,10 +235,13 @@ static int meet_smoothly(const conic_simplifier *s, uint32_t a, uint32_t b) {
          (own == other || along_normals(s, own, other) >= crease);
 }
 
-/* Gives a corner's number to all that are smooth with it, and so on; `found` has room for all triangles. */
+/* Gives a corner's number to all that are smooth with it, and so on, unless there are many; `found` has room for all
+ * triangles. */
 static void spread_number(const conic_simplifier *s, uint32_t from, uint32_t *found, uint32_t (*of_corner)[3]) {
   uint32_t vertex = s->triangles[from / 3].corners[from % 3], number = of_corner[from / 3][from % 3];
   size_t n_found = 1;
+  if (conic_simplifier_has_many(s, vertex))
+    return;
   found[0] = from;
   for (size_t i = 0; i < n_found; i++)
     for (uint32_t slot = conic_simplifier_living(s, s->vertices[vertex].ring); slot != CONIC_NONE;

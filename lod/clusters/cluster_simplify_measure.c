@@ -41,11 +41,13 @@ static int comes_nearer(const conic_simplifier *s, const conic_simplifier_triang
   return 1;
 }
 
-/* The nearest of the triangles about a vertex, if it is nearer than all before. */
+/* The nearest of the triangles about a vertex, or of the first of many, if it is nearer than all before. */
 static const conic_simplifier_triangle *nearest_about(const conic_simplifier *s, uint32_t v, approach *a) {
   const conic_simplifier_triangle *nearest = NULL;
-  for (uint32_t slot = conic_simplifier_living(s, s->vertices[v].ring); slot != CONIC_NONE && a->least2 > a->enough2;
-       slot = conic_simplifier_after(s, slot))
+  int n = 0;
+  for (uint32_t slot = conic_simplifier_living(s, s->vertices[v].ring);
+       slot != CONIC_NONE && a->least2 > a->enough2 && n < CONIC_SIMPLIFIER_MANY;
+       slot = conic_simplifier_after(s, slot), n++)
     if (comes_nearer(s, &s->triangles[slot / 3], a))
       nearest = &s->triangles[slot / 3];
   return nearest;
@@ -58,8 +60,8 @@ static const conic_simplifier_triangle *known_near(const conic_simplifier *s, co
 }
 
 /* Begins with what is known, or with the triangles about the vertex that a point is near to. Goes on to those that
- * touch the nearest, as long as that comes nearer, but no nearer than the nearest of all. About the corners of the
- * triangle before, all have been looked at. */
+ * touch the nearest, as long as that comes nearer and is not far, but no nearer than the nearest of all. About the
+ * corners of the triangle before, all have been looked at. */
 static double distance2_of(const conic_simplifier *s, const conic_simplifier_point *point, double enough2,
                            const conic_simplifier_triangle **nearest_of_all) {
   const conic_simplifier_vertex *own = &s->vertices[point->vertex];
@@ -71,7 +73,7 @@ static double distance2_of(const conic_simplifier *s, const conic_simplifier_poi
     from = nearest_about(s, first, &a);
   }
   *nearest_of_all = from;
-  while (from && a.least2 > enough2) {
+  for (int n = 0; n < CONIC_SIMPLIFIER_MANY && from && a.least2 > enough2; n++) {
     const conic_simplifier_triangle *nearest = NULL;
     for (int corner = 0; corner < 3; corner++) {
       uint32_t v = from->corners[corner];

@@ -132,8 +132,9 @@ static conic_status take_moved(const taking *t, size_t triangle, int corner, uin
   uint32_t normal = t->normals.of_corner ? t->normals.of_corner[triangle][corner] : 0;
   uint32_t at = t->s->vertices[vertex].moved;
   conic_status status = CONIC_OK;
+  int n = 0;
   while (at != CONIC_NONE && (t->levels->moved[at].original != original || t->levels->moved[at].of_normal != normal))
-    at = t->levels->moved[at].next;
+    at = ++n < CONIC_SIMPLIFIER_MANY ? t->levels->moved[at].next : CONIC_NONE; /* one twice does no harm */
   if (at == CONIC_NONE) {
     status = add_moved(t, vertex, original, normal);
     at = t->s->vertices[vertex].moved;

@@ -199,7 +199,8 @@ static int keeps_seams(const conic_simplifier *s, const fan *f, uint32_t v) {
 
 static int may_go(const conic_simplifier *s, const fan *f, const conic_simplifier_spoke *to) {
   uint32_t v = to->vertex;
-  return keeps_seams(s, f, v) && keeps_surface(s, f, v) && leaves_some(s, f, v) && keeps_facing(s, f, to);
+  return !conic_simplifier_has_many(s, v) && keeps_seams(s, f, v) && keeps_surface(s, f, v) && leaves_some(s, f, v) &&
+         keeps_facing(s, f, to);
 }
 
 static void find_costs(const conic_simplifier *s, const fan *f) {
@@ -226,10 +227,12 @@ static conic_simplifier_spoke *cheapest_of(const fan *f) {
 
 void conic_simplifier_find_target(conic_simplifier *s, uint32_t u) {
   conic_simplifier_vertex *own = &s->vertices[u];
-  fan f = fan_of(s, u);
   s->queue.keys[u] = HUGE_VAL;
   own->target = CONIC_NONE;
   own->is_old = 0;
+  if (conic_simplifier_has_many(s, u))
+    return;
+  fan f = fan_of(s, u);
   if (f.n_spokes - f.n_triangles != (own->kind == CONIC_VERTEX_BORDER)) /* the triangles are no simple fan */
     return;
   find_costs(s, &f);

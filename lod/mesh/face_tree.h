@@ -1,4 +1,5 @@
-/* Boxes around boxes around a mesh's faces: how far a place is from the nearest. */
+/* Boxes around boxes around a mesh's faces: how far a place is from the nearest. Where thousands of faces are about as
+ * near, a search ends early, and its distance is an upper bound. */
 #pragma once
 
 #include "lod/mesh/mesh.h"
