@@ -27,6 +27,23 @@ void conic_facts_add(conic_facts *facts, const conic_fact *more, size_t n) {
     facts->list[facts->n++] = more[i];
 }
 
+/* "-y" for an axis, else three numbers. */
+static void name_direction(const double up[3], char text[96]) {
+  snprintf(text, 96, "%.6g %.6g %.6g", up[0], up[1], up[2]);
+  for (int axis = 0; axis < 3; axis++)
+    if (fabs(up[axis]) == 1.0)
+      snprintf(text, 96, "%s%c", up[axis] < 0.0 ? "-" : "", 'x' + axis);
+}
+
+void conic_facts_add_up(conic_facts *facts, const double up[3], conic_up_basis basis) {
+  char text[96];
+  name_direction(up, text);
+  CONIC_ADD_FACTS(facts, CONIC_ARRAY("up"), CONIC_NUMBER(NULL, up[0]), CONIC_NUMBER(NULL, up[1]),
+                  CONIC_NUMBER(NULL, up[2]), CONIC_END,
+                  conic_fact_text(CONIC_FACT_TEXT, "up_basis", "%s", conic_up_basis_name(basis)),
+                  CONIC_LINE("up", "%s, %s", text, conic_up_basis_reason(basis)));
+}
+
 void conic_facts_add_bounds(conic_facts *facts, const double low[3], const double high[3]) {
   CONIC_ADD_FACTS(
       facts, CONIC_OBJECT("bounds"), CONIC_ARRAY("min"), CONIC_NUMBER(NULL, low[0]), CONIC_NUMBER(NULL, low[1]),

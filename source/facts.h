@@ -33,5 +33,8 @@ void conic_facts_add(conic_facts *facts, const conic_fact *more, size_t n);
   conic_facts_add(facts, (const conic_fact[]){__VA_ARGS__},                                                            \
                   sizeof((const conic_fact[]){__VA_ARGS__}) / sizeof(conic_fact))
 
+/* Which way is up, and why, and their line. */
+void conic_facts_add_up(conic_facts *facts, const double up[3], conic_up_basis basis);
+
 /* The object "bounds", and its line. */
 void conic_facts_add_bounds(conic_facts *facts, const double low[3], const double high[3]);

@@ -59,12 +59,6 @@ static conic_status outline_means(gaussians_source *g) {
   return CONIC_OK;
 }
 
-/* A frame's letters say where its axes point: up is the axis of u, or opposite to the axis of d. */
-static void up_of_frame(const char *frame, double up[3]) {
-  for (int axis = 0; axis < 3; axis++)
-    up[axis] = frame[axis] == 'u' ? 1.0 : frame[axis] == 'd' ? -1.0 : 0.0;
-}
-
 static conic_status open_gaussians(conic_source *source, const char *const *paths, size_t n_paths,
                                    const conic_source_options *options) {
   gaussians_source *g = (gaussians_source *)source;
@@ -83,7 +77,7 @@ static conic_status open_gaussians(conic_source *source, const char *const *path
     return conic_fail(source->context, CONIC_ERROR_INPUT, "%s: there is no Gaussian that could be drawn", paths[0]);
   scale->n_splats = g->gaussians.count;
   scale->has_colors = 1;
-  up_of_frame(g->gaussians.frame, scale->up);
+  conic_gaussians_find_up(&g->gaussians, scale->up);
   scale->up_basis = CONIC_UP_KIND;
   return outline_means(g);
 }

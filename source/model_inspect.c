@@ -2,6 +2,7 @@
 
 #include "core/formats/model_read.h"
 #include "core/splats/clip.h"
+#include "gaussians/scene/gaussian_set.h"
 #include "source/reach.h"
 #include "source/source_kind.h"
 
@@ -185,11 +186,12 @@ static void tell_wrong_gaussians(const conic_gaussians *gaussians, conic_facts *
 
 conic_status conic_gaussians_inspect(conic_context *context, const char *path, int is_checked, conic_facts *facts) {
   conic_gaussians gaussians;
-  double low[3], high[3];
+  double low[3], high[3], up[3];
   conic_status status = conic_gaussians_read(context, path, NULL, &gaussians);
   if (status != CONIC_OK)
     return status;
   int is_2d = gaussians.scale[2] == NULL;
+  conic_gaussians_find_up(&gaussians, up);
   CONIC_ADD_FACTS(facts, conic_fact_text(CONIC_FACT_TEXT, "kind", "%s", conic_gaussian_kind_name(gaussians.kind)),
                   CONIC_COUNT("gaussians", gaussians.count), CONIC_COUNT("sh_degree", gaussians.sh_degree),
                   CONIC_TRUTH("2d", is_2d), CONIC_TRUTH("antialiased", gaussians.is_antialiased),
@@ -197,6 +199,7 @@ conic_status conic_gaussians_inspect(conic_context *context, const char *path, i
                   CONIC_LINE("gaussians", "%zu, %s, harmonics of degree %d%s", gaussians.count, is_2d ? "2D" : "3D",
                              gaussians.sh_degree, gaussians.is_antialiased ? ", trained antialiased" : ""),
                   CONIC_LINE("frame", "%s", gaussians.frame));
+  conic_facts_add_up(facts, up, CONIC_UP_KIND);
   if (conic_gaussians_bounds(&gaussians, low, high))
     conic_facts_add_bounds(facts, low, high);
   if (is_checked)

@@ -6,6 +6,27 @@
 #include "core/base/base.h"
 #include "core/base/vectors.h"
 
+static const struct {
+  const char *name, *reason;
+} bases[] = {[CONIC_UP_HABIT] = {"habit", "as most such files have it"},
+             [CONIC_UP_KIND] = {"kind", "as the file or its kind says"},
+             [CONIC_UP_FLAT] = {"flat", "as it lies flat"},
+             [CONIC_UP_OPEN] = {"open", "as its surface is open below"},
+             [CONIC_UP_BASE] = {"base", "as it stands on a flat base"},
+             [CONIC_UP_FACING] = {"facing", "so that the drawing is seen from its front"}};
+
+static int is_basis(conic_up_basis basis) {
+  return (size_t)basis < sizeof bases / sizeof *bases;
+}
+
+const char *conic_up_basis_name(conic_up_basis basis) {
+  return is_basis(basis) ? bases[basis].name : NULL;
+}
+
+const char *conic_up_basis_reason(conic_up_basis basis) {
+  return is_basis(basis) ? bases[basis].reason : NULL;
+}
+
 /* The most splats and triangles to look at; fewer than the least tell nothing. */
 enum { MOST_SAMPLES = 20000, LEAST_SAMPLES = 30 };
 

@@ -69,6 +69,8 @@ static void find_losses(convert_job *job) {
     add_loss(job, "nothing says any more that it was trained antialiased", 0.0);
   if (from->is_linear && !to->is_linear)
     add_loss(job, "nothing says any more that colours are linear", 0.0);
+  if (from->up[0] != to->up[0] || from->up[1] != to->up[1] || from->up[2] != to->up[2])
+    add_loss(job, "nothing says any more which way is up", 0.0);
   if (from->n_left_out)
     add_loss(job, "%g columns that Gaussians do not need are left out", (double)from->n_left_out);
   const struct {

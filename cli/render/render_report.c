@@ -120,16 +120,13 @@ static conic_status report_counts(cli_json *json, const cli_render_job *job) {
 
 /* As a camera's file has it, so that this can be one. */
 static void report_camera(cli_json *json, const cli_render_job *job) {
-  static const char *const bases[] = {
-      [CONIC_UP_HABIT] = "habit", [CONIC_UP_KIND] = "kind", [CONIC_UP_FLAT] = "flat",
-      [CONIC_UP_OPEN] = "open",   [CONIC_UP_BASE] = "base", [CONIC_UP_FACING] = "facing"};
   if (!job->camera_path) {
     const conic_source_scale *scale = conic_source_measure(job->source);
     cli_json_array(json, "up");
     for (int i = 0; i < 3; i++)
       cli_json_number(json, NULL, job->is_up_given ? job->framing.up[i] : scale->up[i]);
     cli_json_close(json);
-    cli_json_text(json, "up_basis", job->is_up_given ? "given" : bases[scale->up_basis]);
+    cli_json_text(json, "up_basis", job->is_up_given ? "given" : conic_up_basis_name(scale->up_basis));
   }
   cli_json_object(json, "camera");
   cli_camera_write(json, &job->last_camera);

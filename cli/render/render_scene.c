@@ -76,17 +76,12 @@ static int is_seen_around(const cli_render_job *job) {
 
 /* Finds out which way is up, and says so where that was a guess. */
 static conic_status stand_upright(cli_session *session, cli_render_job *job) {
-  static const char *const reasons[] = {[CONIC_UP_KIND] = NULL,
-                                        [CONIC_UP_FLAT] = "as it lies flat",
-                                        [CONIC_UP_OPEN] = "as its surface is open below",
-                                        [CONIC_UP_BASE] = "as it stands on a flat base",
-                                        [CONIC_UP_FACING] = "so that the drawing is seen from its front"};
   if (job->is_up_given || !is_seen_around(job))
     return CONIC_OK;
   conic_status status = conic_source_stand(job->source);
-  const char *reason = reasons[conic_source_measure(job->source)->up_basis];
-  if (status == CONIC_OK && reason)
-    cli_note(session, "up: z, %s; --up says otherwise", reason);
+  conic_up_basis basis = conic_source_measure(job->source)->up_basis;
+  if (status == CONIC_OK && basis != CONIC_UP_HABIT && basis != CONIC_UP_KIND)
+    cli_note(session, "up: z, %s; --up says otherwise", conic_up_basis_reason(basis));
   return status;
 }
 

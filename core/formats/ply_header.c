@@ -1,6 +1,8 @@
 #include "core/formats/ply_header.h"
 
 #include "core/base/byte_order.h"
+#include "core/base/vectors.h"
+#include "core/files/number.h"
 
 typedef struct type_description {
   const char *names[2];
@@ -82,7 +84,7 @@ static int is_word(const header_line *line, int i_word, const char *word) {
   return i_word < line->n_words && strcmp(line->words[i_word], word) == 0;
 }
 
-/* Comments are ignored, however long, unless they name a texture. */
+/* Comments are ignored, however long, unless read_comment knows them. */
 static int is_comment(const header_line *line) {
   return line->n_words == 0 || is_word(line, 0, "comment") || is_word(line, 0, "obj_info");
 }
@@ -96,10 +98,22 @@ static int is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r';
 }
 
+static char lower_case(char c) {
+  return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+}
+
+/* In either case, as programs differ. */
+static int begins_with(const char *c, const char *end, const char *text) {
+  for (; *text; c++, text++)
+    if (c == end || lower_case(*c) != lower_case(*text))
+      return 0;
+  return 1;
+}
+
 /* Whether a comment begins with that word and a blank; *c then moves past them. */
 static int has_keyword(const char **c, const char *end, const char *keyword) {
   size_t n = strlen(keyword);
-  if ((size_t)(end - *c) <= n || memcmp(*c, keyword, n) != 0 || !is_blank((*c)[n]))
+  if (!begins_with(*c, end, keyword) || (size_t)(end - *c) <= n || !is_blank((*c)[n]))
     return 0;
   *c += n;
   while (*c < end && is_blank(**c))
@@ -122,6 +136,36 @@ static conic_status read_texture_name(conic_input *input, const header_line *lin
   return conic_texts_add(input->context, textures, name, (size_t)(name_end - name));
 }
 
+/* Nerfstudio names an axis, and Brush gives a direction. Its y stands for what it does not know. */
+static void read_up(const char *c, const char *end, float up[3]) {
+  double found[3] = {begins_with(c, end, "x") ? 1.0 : 0.0, 0.0, begins_with(c, end, "z") ? 1.0 : 0.0};
+  for (int axis = 0; axis < 3; axis++) {
+    while (c < end && (is_blank(*c) || *c == ',' || *c == '['))
+      c++;
+    c += conic_number_parse(c, (size_t)(end - c), &found[axis]);
+  }
+  double square = conic_dot(found, found);
+  for (int axis = 0; axis < 3 && square > 1e-30 && square < 1e30; axis++)
+    up[axis] = (float)found[axis];
+}
+
+/* What Brush and Postshot say of how Gaussians were trained. */
+static void read_splat_mode(const char *c, const char *end, conic_ply_splat_mode *mode) {
+  static const struct {
+    const char *keyword, *value;
+    conic_ply_splat_mode mode;
+  } known[] = {{"SplatRenderMode:", "default", CONIC_PLY_MODE_PLAIN},
+               {"SplatRenderMode:", "mip", CONIC_PLY_MODE_MIP},
+               {"SplatRenderMode:", "2dgs", CONIC_PLY_MODE_2D},
+               {"antialiased", "0", CONIC_PLY_MODE_PLAIN},
+               {"antialiased", "1", CONIC_PLY_MODE_MIP}};
+  for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+    const char *value = c;
+    if (has_keyword(&value, end, known[i].keyword) && begins_with(value, end, known[i].value))
+      *mode = known[i].mode;
+  }
+}
+
 static conic_status read_comment(conic_input *input, const header_line *line, conic_ply_header *header) {
   conic_status status = conic_input_fill(input, CONIC_INPUT_LONGEST_WORD);
   if (status != CONIC_OK)
@@ -131,10 +175,10 @@ static conic_status read_comment(conic_input *input, const header_line *line, co
     c++;
   if (has_keyword(&c, end, "TextureFile"))
     return read_texture_name(input, line, c, end, &header->textures);
-  if (has_keyword(&c, end, "SplatRenderMode:") && end - c >= 4)
-    header->splat_mode = memcmp(c, "mip", 3) == 0    ? CONIC_PLY_MODE_MIP
-                         : memcmp(c, "2dgs", 4) == 0 ? CONIC_PLY_MODE_2D
-                                                     : CONIC_PLY_MODE_PLAIN;
+  if (has_keyword(&c, end, "Vertical axis:"))
+    read_up(c, end, header->up);
+  else
+    read_splat_mode(c, end, &header->splat_mode);
   return CONIC_OK;
 }
 
@@ -268,6 +312,11 @@ static conic_status read_lines(conic_input *input, conic_ply_header *header) {
 conic_status conic_ply_header_read(conic_input *input, conic_ply_header *header) {
   memset(header, 0, sizeof *header);
   conic_status status = read_lines(input, header);
+  const conic_ply_element *vertices = conic_ply_find_element(header, "vertex");
+  if (status == CONIC_OK && vertices && conic_ply_find_property(header, vertices, "sb_params_0") >= 0)
+    status = conic_fail(input->context, CONIC_ERROR_INPUT,
+                        "%s: colours by spherical betas (sb_params_0 …), which are not read (line %llu)", input->name,
+                        (unsigned long long)vertices->line);
   if (status != CONIC_OK)
     conic_ply_header_release(input->context, header);
   return status;

@@ -45,11 +45,12 @@ typedef struct conic_ply_header {
   conic_ply_property *properties;
   size_t n_elements, n_properties, element_capacity, property_capacity;
   conic_texts textures;            /* comment TextureFile NAME */
-  conic_ply_splat_mode splat_mode; /* comment SplatRenderMode: NAME */
+  conic_ply_splat_mode splat_mode; /* comment SplatRenderMode: NAME, or antialiased 1 */
+  float up[3];                     /* comment Vertical axis: z, or X Y Z; of any length, and 0 where there is none */
 } conic_ply_header;
 
 /* Reads from "ply" to past "end_header". On success the caller releases *header; on failure it is empty.
- * Errors: INPUT, MEMORY. */
+ * Errors: INPUT (also for Gaussians whose colours are spherical betas), MEMORY. */
 conic_status conic_ply_header_read(conic_input *input, conic_ply_header *header);
 void conic_ply_header_release(conic_context *context, conic_ply_header *header);
 

@@ -1,5 +1,6 @@
 #include "core/formats/readers.h"
 
+#include "core/base/vectors.h"
 #include "core/formats/ply_columns.h"
 #include "core/formats/ply_texture.h"
 
@@ -239,7 +240,10 @@ static conic_status read_body(conic_input *input, const conic_read_options *opti
   if (status == CONIC_OK)
     status = conic_builder_deliver(&builder, 1);
   model->follows_cutoff = reader->layout.form == CONIC_PLY_CIRCLES;
-  if (reader->layout.has_harmonics)
+  for (int axis = 0; axis < 3; axis++)
+    model->up[axis] = (double)header->up[axis];
+  const int is_said = conic_normalize(model->up);
+  if (!is_said && reader->layout.form == CONIC_PLY_GAUSSIANS && reader->layout.fields & CONIC_SPLATS_COLORS)
     model->up[1] = -1.0; /* Gaussians are trained in the frame of the first camera, or of COLMAP: y points down */
   conic_memory_release(input->context, reader);
   return status;

@@ -216,7 +216,7 @@ static conic_status read_packed_scene(compressed_reader *reader, const conic_gau
                                    conic_degree_of_coefficients(1 + n_rest / 3), fields, reader->gaussians);
   if (status != CONIC_OK)
     return status;
-  reader->gaussians->is_antialiased = header->splat_mode == CONIC_PLY_MODE_MIP;
+  conic_gaussians_take_comments(header, reader->gaussians);
   reader->n_chunks = (size_t)conic_ply_find_element(header, "chunk")->count;
   reader->chunks = conic_memory_allocate(input->context, reader->n_chunks, sizeof *reader->chunks);
   return reader->chunks ? read_packed_elements(reader, n_rest) : CONIC_ERROR_MEMORY;
@@ -299,8 +299,7 @@ static void print_packed_header(const conic_gaussian_writer *writer, size_t n_re
   const conic_gaussians *gaussians = writer->gaussians;
   size_t n = gaussians->count;
   fprintf(writer->to, "ply\nformat binary_little_endian 1.0\ncomment conic %s\n", conic_version());
-  if (gaussians->is_antialiased || !gaussians->scale[2])
-    fprintf(writer->to, "comment SplatRenderMode: %s\n", gaussians->scale[2] ? "mip" : "2dgs");
+  conic_gaussian_writer_put_comments(writer, !gaussians->scale[2]);
   fprintf(writer->to, "element chunk %zu\n", n / CHUNK + (n % CHUNK != 0));
   for (int i = 0; i < N_BOUNDS; i++)
     fprintf(writer->to, "property float %s\n", bound_names[i]);

@@ -21,6 +21,9 @@ conic_status conic_gaussian_ply_read(conic_input *input, const conic_ply_header 
 conic_status conic_compressed_ply_read(conic_input *input, const conic_ply_header *header,
                                        const conic_gaussians_read_options *options, conic_gaussians *gaussians);
 
+/* How Gaussians were trained, and which way is up: what the header's comments say of it. */
+void conic_gaussians_take_comments(const conic_ply_header *header, conic_gaussians *gaussians);
+
 /* Of the bytes of a whole file; `name` is for messages. Errors: INPUT, MEMORY, CANCELLED, UNSUPPORTED. */
 typedef struct conic_gaussian_bytes {
   conic_context *context;
@@ -65,6 +68,9 @@ conic_status conic_sog_write(const conic_gaussian_writer *writer);
 /* What an .spz of version 3 packs as gzip, in a block that the caller releases, on failure too. Errors: as above. */
 conic_status conic_spz_make_block(const conic_gaussian_writer *writer, unsigned char **block, size_t *n_block);
 conic_status conic_gaussian_gltf_write(const conic_gaussian_writer *writer);
+
+/* The comments of a PLY's header that conic_gaussians_take_comments takes; says_flat: that they are 2D. */
+void conic_gaussian_writer_put_comments(const conic_gaussian_writer *writer, int says_flat);
 
 /* Errors: IO. */
 conic_status conic_gaussian_writer_put(const conic_gaussian_writer *writer, const void *bytes, size_t n_bytes);

@@ -1,6 +1,7 @@
 /* Gaussians in PLY, as 3DGS, 2DGS and Mip-Splatting write them: a row a Gaussian, before activation. */
 
 #include "conic/version.h"
+#include "core/files/number.h"
 #include "core/formats/ply_source.h"
 #include "gaussians/formats/gaussian_formats.h"
 #include "gaussians/scene/activation.h"
@@ -12,6 +13,7 @@ typedef struct ply_target {
   float **column;  /* or */
   int i_harmonic;  /* a number of each Gaussian's harmonics; -1: a column */
   int origin_axis; /* of a position that has an origin; -1: none */
+  double white;    /* of a colour that is no coefficient yet: what stands for 1; else 0 */
 } ply_target;
 
 typedef struct gaussian_reader {
@@ -40,10 +42,14 @@ static int has_values(const conic_ply_header *header, const char *const *names, 
   return 1;
 }
 
+static const char *const coefficient_names[] = {"f_dc_0", "f_dc_1", "f_dc_2"};
+static const char *const color_names[] = {"red", "green", "blue"}; /* nerfstudio's --ply-color-mode rgb */
+
 int conic_ply_has_gaussians(const conic_ply_header *header) {
-  static const char *const names[] = {"x",       "y",       "z",     "f_dc_0", "f_dc_1", "f_dc_2", "opacity",
-                                      "scale_0", "scale_1", "rot_0", "rot_1",  "rot_2",  "rot_3"};
-  return has_values(header, names, sizeof names / sizeof *names);
+  static const char *const names[] = {"x",       "y",     "z",     "opacity", "scale_0",
+                                      "scale_1", "rot_0", "rot_1", "rot_2",   "rot_3"};
+  return has_values(header, names, sizeof names / sizeof *names) &&
+         (has_values(header, coefficient_names, 3) || has_values(header, color_names, 3));
 }
 
 static void add_target(gaussian_reader *reader, const char *name, float **column, int i_harmonic) {
@@ -51,7 +57,19 @@ static void add_target(gaussian_reader *reader, const char *name, float **column
   if (i < 0)
     return;
   reader->columns[reader->n_targets] = i;
-  reader->targets[reader->n_targets++] = (ply_target){column, i_harmonic, -1};
+  reader->targets[reader->n_targets++] = (ply_target){column, i_harmonic, -1, 0.0};
+}
+
+/* The colour seen from everywhere: a coefficient, or a display value. */
+static void add_color(gaussian_reader *reader, int channel) {
+  double least, white;
+  if (has_values(reader->header, coefficient_names, 3)) {
+    add_target(reader, coefficient_names[channel], NULL, channel);
+    return;
+  }
+  add_target(reader, color_names[channel], NULL, channel);
+  conic_ply_type_range(reader->properties[reader->columns[reader->n_targets - 1]].type, &least, &white);
+  reader->targets[reader->n_targets - 1].white = white > 0.0 ? white : 1.0;
 }
 
 /* The degree that the columns f_rest_0 … are of; -1 after a message. */
@@ -77,8 +95,7 @@ static void find_harmonics(gaussian_reader *reader, int file_degree) {
   size_t n_rest = conic_harmonics_of_degree(file_degree) / 3 - 1;
   char name[32];
   for (size_t channel = 0; channel < 3; channel++) {
-    snprintf(name, sizeof name, "f_dc_%zu", channel);
-    add_target(reader, name, NULL, (int)channel);
+    add_color(reader, (int)channel);
     for (size_t k = 1; k < n_kept; k++) {
       snprintf(name, sizeof name, "f_rest_%zu", channel * n_rest + k - 1);
       add_target(reader, name, NULL, (int)(3 * k + channel));
@@ -143,8 +160,10 @@ static void store_block(gaussian_reader *reader, size_t first, size_t n) {
   settle_origin(reader, n);
   for (int t = 0; t < reader->n_targets; t++) {
     const ply_target *target = &reader->targets[t];
-    const double *values = reader->block[t];
+    double *values = reader->block[t];
     double origin = target->origin_axis >= 0 ? gaussians->origin[target->origin_axis % 3] : 0.0;
+    for (size_t i = 0; target->white > 0.0 && i < n; i++)
+      values[i] = (values[i] / target->white - 0.5) / CONIC_SH_CONSTANT;
     if (target->column)
       for (size_t i = 0; i < n; i++)
         (*target->column)[first + i] = (float)(origin != 0.0 ? values[i] - origin : values[i]);
@@ -234,7 +253,7 @@ static conic_status begin_gaussians(gaussian_reader *reader, const conic_gaussia
     status = reader->filter ? CONIC_OK : CONIC_ERROR_MEMORY;
   }
   reader->gaussians->count = (size_t)vertices->count;
-  reader->gaussians->is_antialiased = reader->header->splat_mode == CONIC_PLY_MODE_MIP;
+  conic_gaussians_take_comments(reader->header, reader->gaussians);
   return status;
 }
 
@@ -286,14 +305,31 @@ conic_status conic_gaussian_ply_read(conic_input *input, const conic_ply_header 
   return status;
 }
 
+/* --- what .ply and .compressed.ply say besides --- */
+
+void conic_gaussians_take_comments(const conic_ply_header *header, conic_gaussians *gaussians) {
+  gaussians->is_antialiased = header->splat_mode == CONIC_PLY_MODE_MIP;
+  memcpy(gaussians->up, header->up, sizeof gaussians->up);
+}
+
+void conic_gaussian_writer_put_comments(const conic_gaussian_writer *writer, int says_flat) {
+  const conic_gaussians *gaussians = writer->gaussians;
+  char up[3][CONIC_NUMBER_ROOM];
+  if (gaussians->is_antialiased || says_flat)
+    fprintf(writer->to, "comment SplatRenderMode: %s\n", says_flat ? "2dgs" : "mip");
+  for (int axis = 0; axis < 3; axis++)
+    conic_number_print_float(up[axis], gaussians->up[axis]);
+  if (gaussians->up[0] != 0.0f || gaussians->up[1] != 0.0f || gaussians->up[2] != 0.0f)
+    fprintf(writer->to, "comment Vertical axis: %s %s %s\n", up[0], up[1], up[2]);
+}
+
 /* --- writing --- */
 
 static void print_gaussian_header(const conic_gaussian_writer *writer, int is_wide, size_t n_rest) {
   const conic_gaussians *gaussians = writer->gaussians;
   const char *wide = is_wide ? "double" : "float";
   fprintf(writer->to, "ply\nformat binary_little_endian 1.0\ncomment conic %s\n", conic_version());
-  if (gaussians->is_antialiased)
-    fprintf(writer->to, "comment SplatRenderMode: mip\n");
+  conic_gaussian_writer_put_comments(writer, 0);
   fprintf(writer->to, "element vertex %zu\nproperty %s x\nproperty %s y\nproperty %s z\n", gaussians->count, wide, wide,
           wide);
   fprintf(writer->to, "property float nx\nproperty float ny\nproperty float nz\n");

@@ -124,8 +124,10 @@ static int is_compressed_ply(const unsigned char *bytes, size_t n) {
 }
 
 static int is_gaussian_ply(const unsigned char *bytes, size_t n) {
-  static const char *const names[] = {" scale_0", " scale_1", " rot_0", " rot_3", " f_dc_2", " opacity"};
+  static const char *const names[] = {" scale_0", " scale_1", " rot_0", " rot_3", " opacity"};
   size_t n_head = n < 65536 ? n : 65536;
+  if (!conic_assimp_has_text(bytes, n_head, " f_dc_2") && !conic_assimp_has_text(bytes, n_head, " blue"))
+    return 0;
   for (size_t i = 0; i < sizeof names / sizeof *names; i++)
     if (!conic_assimp_has_text(bytes, n_head, names[i]))
       return 0;
@@ -241,7 +243,7 @@ static conic_status read_ply_scene(conic_input *input, const conic_gaussians_rea
     status = conic_gaussian_ply_read(input, &header, options, gaussians);
   else
     status = conic_fail(input->context, CONIC_ERROR_INPUT,
-                        "%s: no Gaussians: the vertices lack f_dc_…, opacity, scale_… or rot_… (line %llu)",
+                        "%s: no Gaussians: the vertices lack f_dc_… or colours, opacity, scale_… or rot_… (line %llu)",
                         input->name, (unsigned long long)(input->line - 1));
   gaussians->kind = kind;
   conic_ply_header_release(input->context, &header);

@@ -31,6 +31,7 @@ conic_status conic_gaussians_copy_lent(conic_context *context, const char *name,
         set->sh_half[i * n_kept + k] = conic_half_of_float(lent->sh[i * n_lent + k]);
   memcpy(set->origin, lent->origin, sizeof set->origin);
   memcpy(set->frame, lent->frame, sizeof set->frame);
+  memcpy(set->up, lent->up, sizeof set->up);
   set->kind = lent->kind;
   set->is_antialiased = lent->is_antialiased;
   set->is_linear = lent->is_linear;

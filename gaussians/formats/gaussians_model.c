@@ -49,8 +49,8 @@ static conic_status read_scene_as_splats(conic_context *context, const char *pat
   conic_status status = conic_gaussians_read(context, path, &reading, &scene);
   if (status == CONIC_OK)
     status = conic_gaussians_to_splats(context, &scene, &model->points);
-  for (int axis = 0; axis < 3 && status == CONIC_OK; axis++)
-    model->up[axis] = scene.frame[axis] == 'u' ? 1.0 : scene.frame[axis] == 'd' ? -1.0 : 0.0;
+  if (status == CONIC_OK)
+    conic_gaussians_find_up(&scene, model->up);
   conic_gaussians_release(context, &scene);
   return status;
 }

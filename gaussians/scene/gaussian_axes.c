@@ -131,7 +131,19 @@ void conic_gaussians_rotate(conic_context *context, conic_gaussians *gaussians, 
   memcpy(origin, gaussians->origin, sizeof origin);
   for (int axis = 0; axis < 3; axis++)
     gaussians->origin[axis] = conic_dot(rotation[axis], origin);
+  const double up[3] = {(double)gaussians->up[0], (double)gaussians->up[1], (double)gaussians->up[2]};
+  for (int axis = 0; axis < 3; axis++)
+    gaussians->up[axis] = sum_terms(rotation[axis], up, 3);
   conic_parallel_for(context, (gaussians->count + BLOCK - 1) / BLOCK, turn_block, &self);
+}
+
+void conic_gaussians_find_up(const conic_gaussians *gaussians, double up[3]) {
+  const char *frame = gaussians->frame;
+  for (int axis = 0; axis < 3; axis++)
+    up[axis] = (double)gaussians->up[axis];
+  if (!conic_normalize(up))
+    for (int axis = 0; axis < 3; axis++)
+      up[axis] = frame[axis] == 'u' ? 1.0 : frame[axis] == 'd' ? -1.0 : 0.0;
 }
 
 conic_status conic_gaussians_turn(conic_context *context, conic_gaussians *gaussians, const char *frame) {

@@ -79,9 +79,8 @@ conic_status conic_gaussians_check(conic_context *context, const conic_gaussians
     is_whole = is_whole && *columns[i];
   for (size_t i = 0; i < sizeof gaussians->reserved / sizeof *gaussians->reserved; i++)
     is_whole = is_whole && !gaussians->reserved[i];
-  return is_whole && !gaussians->reserved_int
-             ? CONIC_OK
-             : conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the Gaussians lack arrays, or are not known", name);
+  return is_whole ? CONIC_OK
+                  : conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the Gaussians lack arrays, or are not known", name);
 }
 
 const float *conic_gaussians_harmonics(const conic_gaussians *gaussians, size_t i, float room[CONIC_MOST_HARMONICS]) {

@@ -39,6 +39,9 @@ static inline double conic_gaussians_mean(const conic_gaussians *gaussians, int 
   return gaussians->origin[axis] != 0.0 ? mean + gaussians->origin[axis] : mean; /* adding 0 would turn -0 into 0 */
 }
 
+/* The unit vector up: as the file says, or by the frame's letters. */
+void conic_gaussians_find_up(const conic_gaussians *gaussians, double up[3]);
+
 /* The arrays of one number a Gaussian that a set has; returns how many. */
 enum { CONIC_MOST_GAUSSIAN_COLUMNS = 15 };
 int conic_gaussians_list_columns(const conic_gaussians *gaussians, float **columns[CONIC_MOST_GAUSSIAN_COLUMNS]);

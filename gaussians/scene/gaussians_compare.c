@@ -1,5 +1,6 @@
 /* How far two scenes are apart, Gaussian by Gaussian. */
 
+#include "core/base/vectors.h"
 #include "gaussians/scene/gaussian_set.h"
 
 /* 0 where both have the same bits. */
@@ -83,8 +84,12 @@ conic_status conic_gaussians_compare(conic_context *context, const conic_gaussia
   if (a->count != b->count)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "gaussians: sets of %zu and %zu cannot be compared", a->count,
                       b->count);
-  differences->is_same = a->is_antialiased == b->is_antialiased && a->is_linear == b->is_linear &&
-                         (a->scale[2] == NULL) == (b->scale[2] == NULL) && memcmp(a->frame, b->frame, 4) == 0;
+  double up_a[3], up_b[3];
+  conic_gaussians_find_up(a, up_a);
+  conic_gaussians_find_up(b, up_b);
+  differences->is_same = conic_dot(up_a, up_b) > 1.0 - 1e-12 && a->is_antialiased == b->is_antialiased &&
+                         a->is_linear == b->is_linear && (a->scale[2] == NULL) == (b->scale[2] == NULL) &&
+                         memcmp(a->frame, b->frame, 4) == 0;
   for (size_t i = 0; i < a->count; i++)
     compare_one(a, b, i, differences);
   const double greatest[] = {differences->position, differences->scale, differences->opacity, differences->color,

@@ -56,8 +56,8 @@ typedef struct conic_gaussians {
   int is_antialiased; /* trained with Mip-Splatting's screen filter */
   int is_linear;      /* colours are linear, not sRGB */
   int n_left_out;     /* columns of the file, or similar values, that this struct cannot hold */
-  int reserved_int;
-  uint64_t reserved[4];
+  float up[3];        /* the direction up, of any length, where the file says more of it than its frame; else 0 */
+  uint64_t reserved[3];
 } conic_gaussians;
 
 /* Which optional arrays a set has, as bits. */

@@ -111,6 +111,10 @@ typedef enum conic_up_basis {
   CONIC_UP_FACING = 5 /* it is a drawing in the plane of x and z, which is looked at from its front: +z */
 } conic_up_basis;
 
+/* "habit", "kind", "flat" …, and what it rests on, as "as it lies flat"; null for a number that is no basis. */
+CONIC_API const char *conic_up_basis_name(conic_up_basis basis);
+CONIC_API const char *conic_up_basis_reason(conic_up_basis basis);
+
 /* The measures of the source as a whole, by which pictures are drawn. */
 typedef struct conic_source_scale {
   unsigned abilities;             /* bits of conic_source_ability */

@@ -107,8 +107,8 @@ class Gaussians(ctypes.Structure):
         ("is_antialiased", c_int),
         ("is_linear", c_int),
         ("n_left_out", c_int),
-        ("reserved_int", c_int),
-        ("reserved", c_uint64 * 4),
+        ("up", c_float * 3),
+        ("reserved", c_uint64 * 3),
     ]
 
 
