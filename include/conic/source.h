@@ -103,12 +103,13 @@ CONIC_API void conic_source_close(conic_source *source);
 
 /* How the source's `up` was found. */
 typedef enum conic_up_basis {
-  CONIC_UP_HABIT = 0, /* nothing tells: +y, and +z for points in text and .pcd */
-  CONIC_UP_KIND = 1,  /* the file, or its kind, says it */
-  CONIC_UP_FLAT = 2,  /* it lies flat: +z */
-  CONIC_UP_OPEN = 3,  /* its surface is open below: +z */
-  CONIC_UP_BASE = 4,  /* it stands on a flat base: +z */
-  CONIC_UP_FACING = 5 /* it is a drawing in the plane of x and z, which is looked at from its front: +z */
+  CONIC_UP_HABIT = 0,  /* nothing tells: +y, and +z for points in text and .pcd */
+  CONIC_UP_KIND = 1,   /* the file, or its kind, says it */
+  CONIC_UP_FLAT = 2,   /* it lies flat: +z */
+  CONIC_UP_OPEN = 3,   /* its surface is open below: +z */
+  CONIC_UP_BASE = 4,   /* it stands on a flat base: +z */
+  CONIC_UP_FACING = 5, /* it is a drawing in the plane of x and z, which is looked at from its front: +z */
+  CONIC_UP_EVEN = 6    /* mirrored along y it is the same, and along z it is not: +z */
 } conic_up_basis;
 
 /* "habit", "kind", "flat" …, and what it rests on, as "as it lies flat"; null for a number that is no basis. */

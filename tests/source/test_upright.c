@@ -61,6 +61,39 @@ static void at_pear(double s, double t, double place[3]) {
   place[2] = along < 0.25 ? 0.0 : 4.0 * (along - 0.25);
 }
 
+/* It leans, so that neither way of mirroring leaves it as it is. */
+static void at_leaning_pear(double s, double t, double place[3]) {
+  at_pear(s, t, place);
+  place[0] += 0.15 * place[2] * place[2];
+  place[1] += 0.15 * place[2] * place[2];
+}
+
+/* As wide as it is tall, and as flat as what lies. */
+static void at_figure(double s, double t, double place[3]) {
+  at_pear(s, t, place);
+  place[0] *= 1.7;
+  place[1] *= 0.5;
+}
+
+/* A plate of that outline. */
+static void at_plate(double s, double t, double place[3]) {
+  at_figure(s, t, place);
+  place[1] *= 0.2;
+}
+
+/* Long, without a base. */
+static void at_rocket(double s, double t, double place[3]) {
+  at_pear(s, t, place);
+  place[2] += s < -0.5 ? 0.5 * (1.0 + s) : 0.25;
+  place[2] *= 1.5;
+}
+
+/* Open behind, as a face is: its left and right are alike. */
+static void at_face(double s, double t, double place[3]) {
+  at_dome(s, t, place);
+  place[1] += 0.6 * place[2] * (1.0 - t);
+}
+
 static void at_ball(double s, double t, double place[3]) {
   double turn = 3.14159265358979 * t, tilt = 1.57079632679 * s;
   place[0] = cos(tilt) * cos(turn);
@@ -100,8 +133,15 @@ int main(void) {
   CHECK(stand(at_card, 0) == CONIC_UP_HABIT);
   CHECK(stand(at_dome, 0) == CONIC_UP_OPEN);
   CHECK(stand(at_dome, 1) == CONIC_UP_HABIT);
-  CHECK(stand(at_pear, 0) == CONIC_UP_BASE);
+  CHECK(stand(at_pear, 0) == CONIC_UP_EVEN);
   CHECK(stand(at_pear, 1) == CONIC_UP_HABIT);
+  CHECK(stand(at_leaning_pear, 0) == CONIC_UP_BASE);
+  CHECK(stand(at_leaning_pear, 1) == CONIC_UP_HABIT);
+  CHECK(stand(at_figure, 0) == CONIC_UP_EVEN);
+  CHECK(stand(at_figure, 1) == CONIC_UP_HABIT);
+  CHECK(stand(at_plate, 1) == CONIC_UP_FLAT);
+  CHECK(stand(at_rocket, 0) == CONIC_UP_HABIT);
+  CHECK(stand(at_face, 0) == CONIC_UP_HABIT);
   CHECK(stand(at_ball, 0) == CONIC_UP_HABIT);
   return check_result();
 }
