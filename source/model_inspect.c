@@ -1,5 +1,6 @@
 /* The contents of a file of points, of a mesh or of Gaussians, and what of it cannot be drawn. */
 
+#include "core/base/vectors.h"
 #include "core/formats/model_read.h"
 #include "core/splats/clip.h"
 #include "gaussians/scene/gaussian_set.h"
@@ -150,6 +151,31 @@ static void tell_fields(unsigned fields, conic_facts *facts) {
   CONIC_ADD_FACTS(facts, CONIC_END, CONIC_LINE("fields", "%s", text));
 }
 
+/* Which way is up, as a picture has it: where the file does not say it, what is drawn is looked at, in a context of its
+ * own, as all messages of the file were told. It takes too long of more points than these. */
+enum { MOST_LOOKED_AT = 400000 };
+
+static void tell_up(conic_context *context, const char *path, const conic_model *model, conic_facts *facts) {
+  const int is_said = conic_dot(model->up, model->up) > 0.0;
+  conic_source_options opening;
+  conic_context_options quiet;
+  conic_context *own = NULL;
+  conic_source *source = NULL;
+  if (is_said)
+    conic_facts_add_up(facts, model->up, CONIC_UP_KIND);
+  if (is_said || strcmp(path, "-") == 0 || (!model->n_triangles && model->points.count > MOST_LOOKED_AT))
+    return;
+  conic_source_options_init(&opening);
+  opening.as = CONIC_AS_AUTO;
+  conic_context_options_init(&quiet);
+  quiet.threads = conic_context_threads(context);
+  if (conic_context_create(&quiet, &own) == CONIC_OK &&
+      conic_source_open(own, &path, 1, &opening, &source) == CONIC_OK && conic_source_stand(source) == CONIC_OK)
+    conic_facts_add_up(facts, conic_source_measure(source)->up, conic_source_measure(source)->up_basis);
+  conic_source_close(source);
+  conic_context_destroy(own);
+}
+
 conic_status conic_model_inspect(conic_context *context, const char *path, int is_checked, conic_facts *facts) {
   conic_model model;
   double low[3], high[3];
@@ -162,8 +188,10 @@ conic_status conic_model_inspect(conic_context *context, const char *path, int i
     CONIC_ADD_FACTS(facts, CONIC_COUNT("triangles", model.n_triangles),
                     CONIC_LINE("triangles", "%zu", model.n_triangles));
   tell_fields(conic_splats_fields(&model.points), facts);
-  if (conic_splats_bounds(&model.points, low, high))
+  if (conic_splats_bounds(&model.points, low, high)) {
     conic_facts_add_bounds(facts, low, high);
+    tell_up(context, path, &model, facts);
+  }
   if (is_checked)
     tell_defects(&model.points, facts);
   status = tell_values(context, path, &model, is_checked, facts);
