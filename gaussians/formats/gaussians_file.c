@@ -15,7 +15,7 @@ typedef struct kind_facts {
 } kind_facts;
 
 /* Endings in the order in which they are looked for. */
-static const kind_facts kinds[CONIC_N_GAUSSIAN_KINDS] = {
+static const kind_facts kinds[] = {
     [CONIC_GAUSSIANS_PLY] = {"ply", "ply", "rdf", 4, NULL, conic_gaussian_ply_write},
     [CONIC_GAUSSIANS_COMPRESSED_PLY] = {"compressed-ply", "compressed.ply", "rdf", 3, NULL, conic_compressed_ply_write},
     [CONIC_GAUSSIANS_SPLAT] = {"splat", "splat", "rdf", 0, conic_splat_file_read, conic_splat_file_write},
@@ -23,10 +23,11 @@ static const kind_facts kinds[CONIC_N_GAUSSIAN_KINDS] = {
     [CONIC_GAUSSIANS_SOG] = {"sog", "sog", "rdf", 3, conic_sog_read, conic_sog_write},
     [CONIC_GAUSSIANS_GLTF] = {"gltf", "gltf", "luf", 3, conic_gaussian_gltf_read, conic_gaussian_gltf_write},
     [CONIC_GAUSSIANS_GLB] = {"glb", "glb", "luf", 3, conic_gaussian_gltf_read, conic_gaussian_gltf_write},
+    [CONIC_GAUSSIANS_KSPLAT] = {"ksplat", "ksplat", "rdf", 3, conic_ksplat_read, NULL},
 };
 
 static int is_kind(conic_gaussian_kind kind) {
-  return (int)kind >= 0 && (int)kind < CONIC_N_GAUSSIAN_KINDS;
+  return (size_t)kind < sizeof kinds / sizeof *kinds;
 }
 
 const char *conic_gaussian_kind_name(conic_gaussian_kind kind) {
@@ -141,6 +142,11 @@ static int is_packed_spz(const unsigned char *bytes, size_t n) {
           memcmp(head, "NGSP", 4) == 0);
 }
 
+/* Version 0.1, and a level of compression. */
+static int is_ksplat(const unsigned char *bytes, size_t n) {
+  return n > 4096 && memcmp(bytes, "\0\1\0\0", 4) == 0 && conic_load_16(bytes + 20) <= 2;
+}
+
 static int is_sog_archive(const unsigned char *bytes, size_t n) {
   size_t tail = n > 65536 ? n - 65536 : 0;
   return conic_assimp_has_text(bytes + tail, n - tail, "meta.json") &&
@@ -178,6 +184,8 @@ static int find_scene_kind(const char *path, const unsigned char *bytes, size_t 
     *kind = CONIC_GAUSSIANS_SOG;
   else if (path && conic_file_has_ending(path, "splat"))
     *kind = CONIC_GAUSSIANS_SPLAT;
+  else if (is_ksplat(bytes, n) || (path && conic_file_has_ending(path, "ksplat")))
+    *kind = CONIC_GAUSSIANS_KSPLAT;
   else
     return 0;
   return 1;
@@ -256,7 +264,8 @@ static conic_status read_scene_bytes(const conic_gaussian_bytes *file, conic_gau
     return conic_gaussian_bytes_wrong(file, 0, "the file is empty");
   if (!find_scene_kind(file->path, file->bytes, file->n_bytes, &kind) && !file->options->is_splat)
     return conic_gaussian_bytes_wrong(
-        file, 0, "no Gaussian scene that is known: a .ply, .compressed.ply, .splat, .spz, .sog, .gltf or .glb is");
+        file, 0,
+        "no Gaussian scene that is known: a .ply, .compressed.ply, .splat, .ksplat, .spz, .sog, .gltf or .glb is");
   conic_status status = kinds[kind].read(file, gaussians);
   gaussians->kind = kind;
   return status;
@@ -320,8 +329,8 @@ conic_status conic_gaussian_writer_tell(const conic_gaussian_writer *writer, siz
 }
 
 static int are_usable(const conic_gaussians_write_options *options) {
-  int is_usable = is_kind(options->kind) && options->most_sh_degree >= 0 &&
-                  (options->spz_version == 3 || options->spz_version == 4);
+  int is_usable = (int)options->kind >= 0 && (int)options->kind < CONIC_N_GAUSSIAN_KINDS &&
+                  options->most_sh_degree >= 0 && (options->spz_version == 3 || options->spz_version == 4);
   for (int i = 0; i < 2; i++)
     is_usable = is_usable && options->sh_bits[i] >= 1 && options->sh_bits[i] <= 8;
   return is_usable;

@@ -25,11 +25,12 @@ typedef enum conic_gaussian_kind {
   CONIC_GAUSSIANS_SPZ = 3,
   CONIC_GAUSSIANS_SOG = 4, /* a folder with meta.json, or a zip */
   CONIC_GAUSSIANS_GLTF = 5,
-  CONIC_GAUSSIANS_GLB = 6
+  CONIC_GAUSSIANS_GLB = 6,
+  CONIC_GAUSSIANS_KSPLAT = 7 /* read, and not written */
 } conic_gaussian_kind;
-enum { CONIC_N_GAUSSIAN_KINDS = 7 };
+enum { CONIC_N_GAUSSIAN_KINDS = 7 }; /* that are written */
 
-/* "ply", "compressed-ply", "splat", "spz", "sog", "gltf", "glb"; null for a number that is no kind. */
+/* "ply", "compressed-ply", "splat", "spz", "sog", "gltf", "glb", "ksplat"; null for a number that is no kind. */
 CONIC_API const char *conic_gaussian_kind_name(conic_gaussian_kind kind);
 
 typedef struct conic_gaussians {

@@ -192,6 +192,46 @@ static void test_splat(conic_context *context) {
   CHECK(unlink(path) == 0);
 }
 
+/* All levels of compression, and what no file can be. */
+static void test_ksplat(conic_context *context) {
+  static unsigned char bytes[KSPLAT_ROOM];
+  conic_gaussians scene;
+  for (int level = 0; level < 3; level++) {
+    size_t n = gaussians_put_ksplat(level, bytes);
+    scene = read_again(context, files_write_bytes("a.bin", bytes, n), 0);
+    CHECK(scene.count == 4 && scene.sh_degree == 1 && scene.kind == CONIC_GAUSSIANS_KSPLAT);
+    for (size_t i = 0; i < 4 && scene.count == 4; i++) {
+      CHECK_NEAR((double)scene.position[0][i], (double)i, 1e-6);
+      CHECK_NEAR((double)scene.position[1][i], 2.0, 1e-6);
+      CHECK_NEAR((double)scene.position[2][i], -0.5, 1e-6);
+      CHECK(scene.scale[0][i] == 0.5f && scene.scale[2][i] == 2.0f && scene.rotation[1][i] == -1.0f);
+      CHECK_NEAR(0.5 + CONIC_SH_CONSTANT * (double)scene.sh[12 * i + 1], 0.2, 1e-6);
+      CHECK(scene.opacity[i] == 0.4f);
+      for (size_t k = 0; k < 9; k++) /* of the file: three of red first */
+        CHECK_NEAR((double)scene.sh[12 * i + 3 + 3 * (k % 3) + k / 3], i == 3 ? 0.0 : (double)k / 8.0 - 0.5,
+                   level == 2 ? 0.008 : 0.0);
+    }
+    conic_gaussians_release(context, &scene);
+    const char *path = files_write_bytes("a.ksplat", bytes, n - 1);
+    files_check_failed("cut", conic_gaussians_read(context, path, NULL, &scene), "a.ksplat", "ends within", NULL);
+    CHECK(unlink(path) == 0);
+  }
+  static const struct {
+    size_t at;
+    uint32_t value;
+    const char *what;
+  } cases[] = {{0, 2, "version"},         {20, 3, "level"},          {4, 9, "sections"},
+               {4136, 4, "section that"}, {4096, 5, "section that"}, {4116, 8, "its buckets"},
+               {4104, 1, "buckets hold"}, {4128, 7, "its buckets"}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    size_t n = gaussians_put_ksplat(1, bytes);
+    conic_store_32(bytes + cases[i].at, cases[i].value);
+    const char *path = files_write_bytes("a.ksplat", bytes, n);
+    files_check_failed(cases[i].what, conic_gaussians_read(context, path, NULL, &scene), cases[i].what, NULL);
+    CHECK(unlink(path) == 0);
+  }
+}
+
 /* Versions 1 and 3 unpacked: half floats and three bytes of rotation; fixed point and three of ten bits. */
 static void test_spz(conic_context *context) {
   static const unsigned char old[] = {'N', 'G',  'S', 'P',  1, 0,    0,   0, 1,   0,   0,   0, 0,   0, 1,   0,
@@ -473,6 +513,7 @@ int main(void) {
   test_codebook(context);
   test_filter(context);
   test_splat(context);
+  test_ksplat(context);
   test_spz(context);
   test_compressed(context);
   test_gltf(context);

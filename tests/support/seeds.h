@@ -519,6 +519,10 @@ static inline void seeds_all_gaussians(seed_set *set, conic_context *context) {
   for (int kind = 0; kind < CONIC_N_GAUSSIAN_KINDS; kind++)
     seeds_gaussians(set, context, (conic_gaussian_kind)kind, 4);
   seeds_gaussians(set, context, CONIC_GAUSSIANS_SPZ, 3);
+  for (int level = 0; level < 3; level++) {
+    unsigned char bytes[KSPLAT_ROOM];
+    seeds_add(set, "gaussians", "ksplat", 0, bytes, gaussians_put_ksplat(level, bytes));
+  }
   seeds_text(set, "gaussians", "ply",
              "ply\nformat ascii 1.0\ncomment SplatRenderMode: mip\nelement vertex 2\nproperty double x\n"
              "property double y\nproperty double z\nproperty float f_dc_0\nproperty float f_dc_1\n"
