@@ -1,4 +1,5 @@
-/* .sog, version 2: meta.json, and pictures whose pixels are the Gaussians, row by row; in a folder or a ZIP archive. */
+/* .sog: meta.json, and pictures whose pixels are the Gaussians, row by row; in a folder or a ZIP archive. Codes stand
+ * for values of a table, or, in version 1, for equal steps between two. */
 
 #include "core/base/gaussian.h"
 #include "core/files/file.h"
@@ -9,6 +10,7 @@
 #include "gaussians/scene/activation.h"
 
 enum { MEANS_LOW, MEANS_HIGH, QUATS, SCALES, SH0, CENTROIDS, LABELS, N_PLANES };
+enum { MEANS, SIZES, COLORS, HARMONICS, N_PARTS };
 enum { CODES = 256, MOST_NAME = 64, A_ROW = 64, MOST_LABELS = 65536, MOST_FILE = 1 << 30 };
 
 typedef struct sog_reader {
@@ -16,9 +18,10 @@ typedef struct sog_reader {
   conic_json json;
   conic_zip zip;
   int is_zip;
-  double version, count, low[3], high[3], bands, n_labels;
+  double version, count, bands, n_labels;
+  double ends[N_PARTS][2][4]; /* the least and the greatest value, by channel */
   int is_antialiased, is_2d;
-  double codebooks[3][CODES]; /* of scales, colours, harmonics */
+  double codebooks[N_PARTS][CODES];
   char names[N_PLANES][MOST_NAME];
   unsigned char *planes[N_PLANES];
   size_t sizes[N_PLANES][2];
@@ -50,27 +53,37 @@ static conic_status read_codebook(sog_reader *reader, double *codebook) {
   return status;
 }
 
-/* One of the five objects: its first picture, how many, and its codebook. */
-static conic_status read_sog_part(sog_reader *reader, int first, int n, double *codebook) {
+/* Of version 1, the ends of every channel; one number for all harmonics. */
+static conic_status read_ends(sog_reader *reader, int part, double ends[4]) {
+  size_t n;
+  return part == HARMONICS ? conic_json_number(&reader->json, ends) : conic_json_numbers(&reader->json, ends, 4, &n);
+}
+
+/* One of the five objects: its first picture, how many, and its values; N_PARTS: none. */
+static conic_status read_sog_part(sog_reader *reader, int first, int n, int part) {
   char key[CONIC_JSON_KEY_ROOM];
   size_t n_read;
+  double shape[2] = {0.0, 0.0};
   conic_json *json = &reader->json;
   conic_json_begin_object(json);
   while (conic_json_next_member(json, key))
     if (strcmp(key, "files") == 0)
       read_file_names(reader, first, n);
-    else if (strcmp(key, "codebook") == 0 && codebook)
-      read_codebook(reader, codebook);
-    else if (strcmp(key, "mins") == 0 && first == MEANS_LOW)
-      conic_json_numbers(json, reader->low, 3, &n_read);
-    else if (strcmp(key, "maxs") == 0 && first == MEANS_LOW)
-      conic_json_numbers(json, reader->high, 3, &n_read);
+    else if (strcmp(key, "codebook") == 0 && part < N_PARTS)
+      read_codebook(reader, reader->codebooks[part]);
+    else if (strcmp(key, "mins") == 0 && part < N_PARTS)
+      read_ends(reader, part, reader->ends[part][0]);
+    else if (strcmp(key, "maxs") == 0 && part < N_PARTS)
+      read_ends(reader, part, reader->ends[part][1]);
+    else if (strcmp(key, "shape") == 0 && part == MEANS)
+      conic_json_numbers(json, shape, 2, &n_read);
     else if (strcmp(key, "count") == 0 && first == CENTROIDS)
       conic_json_number(json, &reader->n_labels);
     else if (strcmp(key, "bands") == 0 && first == CENTROIDS)
       conic_json_number(json, &reader->bands);
     else
       conic_json_skip(json);
+  reader->count = shape[0] > 0.0 ? shape[0] : reader->count;
   return json->status;
 }
 
@@ -85,6 +98,7 @@ static conic_status read_model(sog_reader *reader) {
 static conic_status read_meta(sog_reader *reader) {
   char key[CONIC_JSON_KEY_ROOM];
   conic_json *json = &reader->json;
+  reader->version = 1.0; /* which does not say it */
   conic_json_begin_object(json);
   while (conic_json_next_member(json, key))
     if (strcmp(key, "version") == 0)
@@ -96,26 +110,29 @@ static conic_status read_meta(sog_reader *reader) {
     else if (strcmp(key, "model") == 0)
       read_model(reader);
     else if (strcmp(key, "means") == 0)
-      read_sog_part(reader, MEANS_LOW, 2, NULL);
+      read_sog_part(reader, MEANS_LOW, 2, MEANS);
     else if (strcmp(key, "quats") == 0)
-      read_sog_part(reader, QUATS, 1, NULL);
+      read_sog_part(reader, QUATS, 1, N_PARTS);
     else if (strcmp(key, "scales") == 0)
-      read_sog_part(reader, SCALES, 1, reader->codebooks[0]);
+      read_sog_part(reader, SCALES, 1, SIZES);
     else if (strcmp(key, "sh0") == 0)
-      read_sog_part(reader, SH0, 1, reader->codebooks[1]);
+      read_sog_part(reader, SH0, 1, COLORS);
     else if (strcmp(key, "shN") == 0)
-      read_sog_part(reader, CENTROIDS, 2, reader->codebooks[2]);
+      read_sog_part(reader, CENTROIDS, 2, HARMONICS);
     else
       conic_json_skip(json);
   if (json->status != CONIC_OK)
     return json->status;
-  if (reader->version != 2.0)
-    return sog_wrong(reader,
-                     "a .sog of another version than 2, which is what is read (splat-transform writes it anew)");
+  if (reader->version != 2.0 && reader->version != 1.0)
+    return sog_wrong(reader, "a .sog of another version than 1 and 2");
   if (!(reader->count >= 1.0 && reader->count <= 268402689.0))
     return sog_wrong(reader, "meta.json tells no number of Gaussians that pictures could hold");
   if (!(reader->bands == 0.0 || reader->bands == 1.0 || reader->bands == 2.0 || reader->bands == 3.0))
     return sog_wrong(reader, "harmonics of a degree that .sog has not: 0 to 3 are");
+  if (reader->version == 1.0 && reader->names[CENTROIDS][0]) {
+    reader->n_labels = 1.0; /* the picture's size tells; it has a row at least */
+    reader->bands = 1.0;
+  }
   return reader->bands == 0.0 || (reader->n_labels >= 1.0 && reader->n_labels <= MOST_LABELS)
              ? CONIC_OK
              : sog_wrong(reader, "a number of harmonics' centroids that .sog cannot have");
@@ -155,11 +172,23 @@ static conic_status read_plane(sog_reader *reader, int i_plane, double least_pix
   return status;
 }
 
+/* What version 1 tells by the size of a picture alone. */
+static void find_bands(sog_reader *reader) {
+  const size_t *size = reader->sizes[CENTROIDS];
+  reader->n_labels = (double)(A_ROW * size[1] < MOST_LABELS ? A_ROW * size[1] : MOST_LABELS);
+  for (int degree = 1; degree <= 3; degree++)
+    if (size[0] == (size_t)A_ROW * (size_t)(degree * (degree + 2)))
+      reader->bands = degree;
+}
+
 static conic_status read_planes(sog_reader *reader) {
   conic_status status = CONIC_OK;
   double n_orders = (reader->bands + 1.0) * (reader->bands + 1.0) - 1.0;
   for (int i = 0; status == CONIC_OK && i < (reader->bands > 0.0 ? N_PLANES : CENTROIDS); i++)
     status = read_plane(reader, i, i == CENTROIDS ? ceil(reader->n_labels / A_ROW) * A_ROW * n_orders : reader->count);
+  if (status == CONIC_OK && reader->bands > 0.0 && reader->version == 1.0)
+    find_bands(reader);
+  n_orders = (reader->bands + 1.0) * (reader->bands + 1.0) - 1.0;
   if (status == CONIC_OK && reader->bands > 0.0 && (double)reader->sizes[CENTROIDS][0] != A_ROW * n_orders)
     status = sog_wrong(reader, "the picture of harmonics is not 64 centroids wide");
   return status;
@@ -168,8 +197,8 @@ static conic_status read_planes(sog_reader *reader) {
 /* --- decoding --- */
 
 static double mean_of_code(const sog_reader *reader, int axis, int code) {
-  double width = reader->high[axis] - reader->low[axis];
-  double t = reader->low[axis] + (width == 0.0 ? 1.0 : width) * ((double)code / 65535.0);
+  const double low = reader->ends[MEANS][0][axis], width = reader->ends[MEANS][1][axis] - low;
+  double t = low + (width == 0.0 ? 1.0 : width) * ((double)code / 65535.0);
   double size = conic_gaussian_exp(fabs(t)) - 1.0;
   return t < 0.0 ? -size : size;
 }
@@ -220,28 +249,49 @@ static void decode_harmonics(const sog_reader *reader, const float *values, coni
                                  is_one ? values[reader->planes[CENTROIDS][at + 4 * (k / 3) + k % 3]] : 0.0f);
 }
 
-static conic_status decode_sog(const sog_reader *reader, conic_gaussians *gaussians) {
-  float values[3][CODES], scales[CODES];
+/* What codes stand for, by channel. */
+typedef struct sog_tables {
+  float sizes[3][CODES], log_sizes[3][CODES], colors[4][CODES], logits[CODES], harmonics[CODES];
+} sog_tables;
+
+static double value_of_code(const sog_reader *reader, int part, int channel, int code) {
+  const double low = reader->ends[part][0][channel];
+  return reader->version == 2.0 ? reader->codebooks[part][code]
+                                : low + (reader->ends[part][1][channel] - low) * ((double)code / 255.0);
+}
+
+static void fill_tables(const sog_reader *reader, sog_tables *tables) {
   for (int code = 0; code < CODES; code++) {
-    for (int i = 0; i < 3; i++)
-      values[i][code] = (float)reader->codebooks[i][code];
-    scales[code] = conic_scale_of_log(values[0][code]);
+    for (int k = 0; k < 3; k++) {
+      tables->log_sizes[k][code] = (float)value_of_code(reader, SIZES, k, code);
+      tables->sizes[k][code] = conic_scale_of_log(tables->log_sizes[k][code]);
+      tables->colors[k][code] = (float)value_of_code(reader, COLORS, k, code);
+    }
+    const float logit = (float)value_of_code(reader, COLORS, 3, code), share = (float)((double)code / 255.0);
+    tables->logits[code] = reader->version == 2.0 ? conic_logit_of_opacity(share) : logit;
+    tables->colors[3][code] = reader->version == 2.0 ? share : conic_opacity_of_logit(logit);
+    tables->harmonics[code] = (float)value_of_code(reader, HARMONICS, 0, code);
   }
+}
+
+static conic_status decode_sog(const sog_reader *reader, conic_gaussians *gaussians) {
+  sog_tables tables;
+  fill_tables(reader, &tables);
   for (size_t i = 0; i < gaussians->count; i++) {
-    const unsigned char *of_scales = reader->planes[SCALES] + 4 * i, *color = reader->planes[SH0] + 4 * i;
+    const unsigned char *size = reader->planes[SCALES] + 4 * i, *color = reader->planes[SH0] + 4 * i;
     decode_rotation(reader->planes[QUATS] + 4 * i, gaussians, i);
     for (int k = 0; k < 3; k++) {
       if (gaussians->scale[k])
-        gaussians->scale[k][i] = scales[of_scales[k]];
+        gaussians->scale[k][i] = tables.sizes[k][size[k]];
       if (gaussians->log_scale[k])
-        gaussians->log_scale[k][i] = values[0][of_scales[k]];
-      conic_gaussians_put_harmonic(gaussians, i, (size_t)k, values[1][color[k]]);
+        gaussians->log_scale[k][i] = tables.log_sizes[k][size[k]];
+      conic_gaussians_put_harmonic(gaussians, i, (size_t)k, tables.colors[k][color[k]]);
     }
-    gaussians->opacity[i] = (float)((double)color[3] / 255.0);
+    gaussians->opacity[i] = tables.colors[3][color[3]];
     if (gaussians->logit_opacity)
-      gaussians->logit_opacity[i] = conic_logit_of_opacity(gaussians->opacity[i]);
+      gaussians->logit_opacity[i] = tables.logits[color[3]];
     if (gaussians->sh_degree > 0)
-      decode_harmonics(reader, values[2], gaussians, i);
+      decode_harmonics(reader, tables.harmonics, gaussians, i);
   }
   return decode_sog_means(reader, gaussians);
 }

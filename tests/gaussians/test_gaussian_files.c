@@ -2,6 +2,7 @@
 #include "core/base/byte_order.h"
 #include "core/base/gaussian.h"
 #include "gaussians/formats/codebook.h"
+#include "gaussians/formats/webp_plane.h"
 #include "gaussians/scene/activation.h"
 #include "tests/support/gaussian_fixture.h"
 #include "tests/support/mesh_file.h"
@@ -190,6 +191,55 @@ static void test_splat(conic_context *context) {
   const char *path = files_write_bytes("a.splat", row, 31);
   files_check_failed("31 bytes", conic_gaussians_read(context, path, NULL, &scene), "a.splat", "32 bytes", NULL);
   CHECK(unlink(path) == 0);
+}
+
+static void write_webp(conic_context *context, const char *name, const unsigned char *pixels, size_t width) {
+  const size_t size[2] = {width, 1};
+  unsigned char *bytes;
+  size_t n;
+  CHECK_OK(conic_webp_encode(context, pixels, size, &bytes, &n));
+  files_write_bytes(name, bytes, n);
+  conic_memory_release(context, bytes);
+}
+
+/* Version 1 in a folder: codes are steps between two values of a channel, and the opacity's between logits. */
+static void test_old_sog(conic_context *context) {
+  static const char *const names[] = {"l.webp", "u.webp", "q.webp", "s.webp", "c.webp", "n.webp", "i.webp"};
+  static const char meta[] =
+      "{\"means\":{\"shape\":[2,3],\"dtype\":\"float32\",\"mins\":[0,-1,0],\"maxs\":[1,1,0],\"files\":[\"l.webp\","
+      "\"u.webp\"]},\"scales\":{\"mins\":[-4,-3,-2],\"maxs\":[0,-1,-1],\"files\":[\"s.webp\"]},\"quats\":{\"files\":"
+      "[\"q.webp\"]},\"sh0\":{\"mins\":[-1,0,1,-2],\"maxs\":[1,2,3,2],\"files\":[\"c.webp\"]},\"shN\":{\"shape\":[2,9]"
+      ",\"mins\":-0.5,\"maxs\":0.5,\"quantization\":8,\"files\":[\"n.webp\",\"i.webp\"]}}";
+  static const unsigned char pixels[7][8] = {
+      {0, 255, 0, 255, 255, 0, 7, 255},  {0, 255, 0, 255, 255, 0, 7, 255}, {128, 128, 128, 252, 128, 255, 128, 255},
+      {0, 51, 255, 255, 255, 0, 0, 255}, {0, 255, 51, 0, 255, 0, 0, 255},  {0},
+      {0, 0, 0, 255, 1, 0, 0, 255}};
+  unsigned char centroids[256 * 4] = {0};
+  conic_gaussians scene;
+  if (!gaussians_have(CONIC_GAUSSIANS_SOG))
+    return;
+  for (size_t i = 0; i < 2 * 3 * 4; i++)
+    centroids[i] = i < 12 ? 0 : i % 4 == 1 ? 255 : 51;
+  for (int i = 0; i < 7; i++)
+    write_webp(context, names[i], i == 5 ? centroids : pixels[i], i == 5 ? 192 : 2);
+  scene = read_again(context, files_write("meta.json", meta), 1);
+  CHECK(scene.count == 2 && scene.sh_degree == 1 && scene.kind == CONIC_GAUSSIANS_SOG);
+  CHECK(scene.position[0][0] == 0.0f && scene.position[2][0] == 0.0f);
+  CHECK_NEAR((double)scene.position[0][1], exp(1.0) - 1.0, 1e-6);
+  CHECK_NEAR((double)scene.position[1][1], 1.0 - exp(1.0), 1e-6);
+  CHECK(scene.log_scale[0][0] == -4.0f && scene.log_scale[1][0] == -2.6f && scene.log_scale[2][0] == -1.0f);
+  CHECK(scene.log_scale[0][1] == 0.0f && scene.scale[0][1] == 1.0f);
+  CHECK(scene.sh[0] == -1.0f && scene.sh[1] == 2.0f && scene.sh[2] == 1.4f && scene.sh[12] == 1.0f);
+  CHECK(scene.logit_opacity[0] == -2.0f && scene.logit_opacity[1] == 2.0f);
+  CHECK_NEAR((double)scene.opacity[1], 1.0 / (1.0 + exp(-2.0)), 1e-7);
+  CHECK(scene.sh[3] == -0.5f && scene.sh[12 + 3] == -0.3f && scene.sh[12 + 4] == 0.5f);
+  conic_gaussians_release(context, &scene);
+  write_webp(context, "n.webp", centroids, 256); /* of no degree */
+  const char *path = files_write("meta.json", meta);
+  files_check_failed("256 wide", conic_gaussians_read(context, path, NULL, &scene), "64 centroids wide", NULL);
+  CHECK(unlink(path) == 0);
+  for (int i = 0; i < 7; i++)
+    CHECK(unlink(files_path(names[i])) == 0);
 }
 
 /* All levels of compression, and what no file can be. */
@@ -514,6 +564,7 @@ int main(void) {
   test_filter(context);
   test_splat(context);
   test_ksplat(context);
+  test_old_sog(context);
   test_spz(context);
   test_compressed(context);
   test_gltf(context);
