@@ -7,7 +7,8 @@
 CONIC_DEFINE_NAMES(conic_camera_kind_name, conic_camera_kind, CONIC_N_CAMERA_KINDS, "perspective", "fisheye",
                    "orthographic", "equirectangular", "cube")
 
-CONIC_DEFINE_NAMES(conic_lens_name, conic_lens, CONIC_N_LENSES, "none", "radial", "opencv", "thin-prism", "fov")
+CONIC_DEFINE_NAMES(conic_lens_name, conic_lens, CONIC_N_LENSES, "none", "radial", "opencv", "thin-prism", "fov",
+                   "division", "eucm")
 
 CONIC_DEFINE_OPTIONS(conic_framing, .width = 1024, .height = 1024, .azimuth_deg = 30.0, .elevation_deg = 15.0,
                      .fov_deg = 40.0, .zoom = 1.0, .up = {0.0, 1.0, 0.0})

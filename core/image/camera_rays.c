@@ -136,19 +136,30 @@ static int undistort_bent(const conic_camera_rays *r, const double wanted[2], do
          at[0] * at[0] + at[1] * at[1] <= r->most_radius * r->most_radius;
 }
 
+/* The radius that a lens with a closed form distorts to `place`; negative where there is none. */
+static double radius_of_place(const conic_camera *camera, double place) {
+  const double *k = camera->distortion, s = place * place;
+  if (camera->lens == CONIC_LENS_DIVISION)
+    return fabs(k[0] * s) < 1.0 ? place / (1.0 + k[0] * s) : -1.0;
+  if (camera->lens == CONIC_LENS_EUCM) {
+    double root = 1.0 - (2.0 * k[0] - 1.0) * k[1] * s;
+    double depth = (1.0 - k[0] * k[0] * k[1] * s) / (k[0] * sqrt(root > 0.0 ? root : 0.0) + 1.0 - k[0]);
+    return root >= 0.0 && depth > 0.0 ? place / depth : -1.0;
+  }
+  if (!(fabs(place * k[0]) < 0.5 * CONIC_PI))
+    return -1.0;
+  return k[0] == 0.0 ? place : conic_tan(place * k[0]) / (2.0 * conic_tan(0.5 * k[0]));
+}
+
 static int undistort(const conic_camera_rays *r, double at[2]) {
   const double wanted[2] = {at[0], at[1]}, place = sqrt(at[0] * at[0] + at[1] * at[1]);
-  double radius = place, omega = r->camera->distortion[0];
   if (r->camera->lens == CONIC_LENS_NONE || !(place > 0.0))
     return 1;
-  if (r->camera->lens == CONIC_LENS_FOV) {
-    if (!(fabs(place * omega) < 0.5 * CONIC_PI))
-      return 0;
-    radius = omega == 0.0 ? place : conic_tan(place * omega) / (2.0 * conic_tan(0.5 * omega));
-  } else if (!(place <= r->most_place))
+  const double radius = r->camera->lens >= CONIC_LENS_FOV ? radius_of_place(r->camera, place)
+                        : place <= r->most_place          ? undistort_radius(r, place)
+                                                          : -1.0;
+  if (!(radius >= 0.0))
     return 0;
-  else
-    radius = undistort_radius(r, place);
   for (int axis = 0; axis < 2; axis++)
     at[axis] = wanted[axis] * (radius / place);
   return !r->is_bent || undistort_bent(r, wanted, at);

@@ -33,11 +33,13 @@ typedef enum conic_lens {
                         d = (2·p1·a·b + p2·(s + 2·a²), p1·(s + 2·b²) + 2·p2·a·b) */
   CONIC_LENS_THIN_PRISM, /* k1 k2 p1 p2 k3 k4 s1 s2: r as RADIAL's; d as OPENCV's plus (s1·s, s2·s) */
   CONIC_LENS_FOV,        /* ω: r = atan(2·√s·tan(ω/2))/(ω·√s), d = 0 (Devernay and Faugeras 2001) */
+  CONIC_LENS_DIVISION,   /* k: r = 2/(1 + √(1 − 4·k·s)), d = 0 (Fitzgibbon 2001) */
+  CONIC_LENS_EUCM,       /* α β: r = 1/(α·√(1 + β·s) + 1 − α), d = 0 (Khomutenko and others 2016) */
   CONIC_N_LENSES
 } conic_lens;
 
 /* "perspective", "fisheye", "orthographic", "equirectangular", "cube"; and "none", "radial", "opencv", "thin-prism",
- * "fov"; null for an unknown number. */
+ * "fov", "division", "eucm"; null for an unknown number. */
 CONIC_API const char *conic_camera_kind_name(conic_camera_kind kind);
 CONIC_API const char *conic_lens_name(conic_lens lens);
 

@@ -32,6 +32,10 @@ static double factor_of(const conic_camera *camera, double s) {
     return 1.0 + s * k[0] + s * s * k[1] + s * s * s * k[2] + s * s * s * s * k[3];
   if (camera->lens == CONIC_LENS_THIN_PRISM)
     return 1.0 + s * k[0] + s * s * k[1] + s * s * s * k[4] + s * s * s * s * k[5];
+  if (camera->lens == CONIC_LENS_DIVISION)
+    return 4.0 * k[0] * s <= 1.0 ? 2.0 / (1.0 + sqrt(1.0 - 4.0 * k[0] * s)) : 0.0;
+  if (camera->lens == CONIC_LENS_EUCM)
+    return k[1] * s >= -1.0 ? 1.0 / (k[0] * sqrt(1.0 + k[1] * s) + 1.0 - k[0]) : 0.0;
   double below = 1.0 + s * k[5] + s * s * k[6] + s * s * s * k[7];
   return below > 0.0 ? (1.0 + s * k[0] + s * s * k[1] + s * s * s * k[4]) / below : 0.0;
 }
@@ -78,7 +82,7 @@ static int straighten(const conic_camera *camera, double at[2]) {
       at[axis] *= radius / place;
     return fabs(place * omega) < 0.5 * ORACLE_PI;
   }
-  int rounds = camera->lens == CONIC_LENS_RADIAL || camera->lens == CONIC_LENS_NONE ? 1 : ROUNDS;
+  int rounds = camera->lens == CONIC_LENS_OPENCV || camera->lens == CONIC_LENS_THIN_PRISM ? ROUNDS : 1;
   for (int round = 0; round < rounds; round++) { /* what is not radial, taken from the target again and again */
     double place = sqrt(target[0] * target[0] + target[1] * target[1]), change = 0.0;
     double radius = camera->lens && place > 0.0 ? find_radius(camera, place, most) : place;

@@ -128,7 +128,7 @@ class Camera:
 
     @property
     def lens(self) -> str:
-        """"none", "radial", "opencv", "thin-prism" or "fov"."""
+        """"none", "radial", "opencv", "thin-prism", "fov", "division" or "eucm"."""
         return library.conic_lens_name(self._struct.lens).decode()
 
     def resized(self, width: int, height: int) -> "Camera":

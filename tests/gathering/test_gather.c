@@ -81,6 +81,7 @@ static const camera_case cases[] = {
     {"opencv", CONIC_CAMERA_PERSPECTIVE, CONIC_LENS_OPENCV, 96, 64, 60.0, {-0.2, 0.04, 2e-3, -1e-3}, 1},
     {"pincushion", CONIC_CAMERA_PERSPECTIVE, CONIC_LENS_RADIAL, 96, 64, 60.0, {0.2}, 1},
     {"fov", CONIC_CAMERA_PERSPECTIVE, CONIC_LENS_FOV, 96, 64, 40.0, {0.9}, 5},
+    {"eucm", CONIC_CAMERA_PERSPECTIVE, CONIC_LENS_EUCM, 96, 64, 40.0, {0.5, 1.2}, 5},
     {"pinhole", CONIC_CAMERA_PERSPECTIVE, CONIC_LENS_NONE, 64, 48, 50.0, {0}, 1},
 };
 enum { N_CASES = sizeof cases / sizeof cases[0] };

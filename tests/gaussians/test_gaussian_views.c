@@ -187,6 +187,10 @@ static void project_direction(const conic_camera *c, const double d[3], double p
     r = 1.0 + k[0] * s + k[1] * s * s + k[4] * s * s * s + k[5] * s * s * s * s;
   if (c->lens == CONIC_LENS_FOV && s > 0.0)
     r = atan(2.0 * sqrt(s) * tan(0.5 * k[0])) / (k[0] * sqrt(s));
+  if (c->lens == CONIC_LENS_DIVISION)
+    r = 2.0 / (1.0 + sqrt(1.0 - 4.0 * k[0] * s));
+  if (c->lens == CONIC_LENS_EUCM)
+    r = 1.0 / (k[0] * sqrt(1.0 + k[1] * s) + 1.0 - k[0]);
   if (c->lens == CONIC_LENS_OPENCV || is_prism) {
     x = 2.0 * k[2] * a * b + k[3] * (s + 2.0 * a * a) + (is_prism ? k[6] * s : 0.0);
     y = k[2] * (s + 2.0 * b * b) + 2.0 * k[3] * a * b + (is_prism ? k[7] * s : 0.0);
@@ -210,6 +214,9 @@ static const lens_case lens_cases[] = {
     {"opencv", CONIC_CAMERA_PERSPECTIVE, CONIC_LENS_OPENCV, 0.9, {-0.28, 0.07, 1e-3, -2e-3}},
     {"full opencv", CONIC_CAMERA_PERSPECTIVE, CONIC_LENS_OPENCV, 0.9, {0.4, 0.1, 1e-3, 5e-4, 0.01, 0.6, 0.2, 0.02}},
     {"fov", CONIC_CAMERA_PERSPECTIVE, CONIC_LENS_FOV, 0.6, {0.9}},
+    {"division", CONIC_CAMERA_PERSPECTIVE, CONIC_LENS_DIVISION, 0.6, {-0.2}},
+    {"pincushion", CONIC_CAMERA_PERSPECTIVE, CONIC_LENS_DIVISION, 0.9, {0.1}},
+    {"eucm", CONIC_CAMERA_PERSPECTIVE, CONIC_LENS_EUCM, 0.6, {0.6, 1.1}},
     {"opencv fisheye", CONIC_CAMERA_FISHEYE, CONIC_LENS_RADIAL, 0.4, {0.03, -0.01, 2e-3, -3e-4}},
     {"thin prism fisheye",
      CONIC_CAMERA_FISHEYE,

@@ -109,6 +109,36 @@ static void test_models(void) {
        CONIC_CAMERA_FISHEYE,
        CONIC_LENS_THIN_PRISM,
        {1, 2, 3, 4, 5, 6, 7, 8}},
+      {"SIMPLE_DIVISION",
+       12,
+       "50 31 24 -.1",
+       {50, 31, 24, -.1},
+       4,
+       50,
+       24,
+       CONIC_CAMERA_PERSPECTIVE,
+       CONIC_LENS_DIVISION,
+       {-.1}},
+      {"DIVISION",
+       13,
+       "50 49 31 24 .1",
+       {50, 49, 31, 24, .1},
+       5,
+       49,
+       24,
+       CONIC_CAMERA_PERSPECTIVE,
+       CONIC_LENS_DIVISION,
+       {.1}},
+      {"EUCM",
+       16,
+       "50 49 31 24 .5 1.5",
+       {50, 49, 31, 24, .5, 1.5},
+       6,
+       49,
+       24,
+       CONIC_CAMERA_PERSPECTIVE,
+       CONIC_LENS_EUCM,
+       {.5, 1.5}},
       {"SIMPLE_FISHEYE", 14, "50 31 24", {50, 31, 24}, 3, 50, 24, CONIC_CAMERA_FISHEYE, CONIC_LENS_NONE, {0}},
       {"FISHEYE", 15, "50 49 31 24", {50, 49, 31, 24}, 4, 49, 24, CONIC_CAMERA_FISHEYE, CONIC_LENS_NONE, {0}},
   };
@@ -230,7 +260,7 @@ static void test_wrong_colmap(void) {
   check_colmap_fails("\n1 PINHOLE 64 48 50 50 31 24 1\n", "", "not the numbers", "line 2");
   check_colmap_fails("1 PINHOLE 64 48.5 50 50 31 24\n", "", "1 to 65535", "line 1");
   check_colmap_fails("1 RAD_TAN_THIN_PRISM_FISHEYE 64 48 50\n", "", "RAD_TAN_THIN_PRISM_FISHEYE", "line 1");
-  check_colmap_fails("1 EUCM 64 48 50\n", "", "is not read: EUCM", "line 1");
+  check_colmap_fails("1 EUCM 64 48 50\n", "", "not the numbers of a camera that is EUCM", "line 1");
   check_colmap_fails("1 WHAT 64 48 50\n", "", "none that is known", "line 1");
   check_colmap_fails("x PINHOLE 64 48 50\n", "", "begins with its number", "line 1");
   check_colmap_fails(sound, "", "no images", "images.txt");
