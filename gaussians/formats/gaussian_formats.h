@@ -37,6 +37,7 @@ typedef struct conic_gaussian_bytes {
 conic_status conic_splat_file_read(const conic_gaussian_bytes *file, conic_gaussians *gaussians);
 conic_status conic_ksplat_read(const conic_gaussian_bytes *file, conic_gaussians *gaussians);
 conic_status conic_spz_read(const conic_gaussian_bytes *file, conic_gaussians *gaussians);
+conic_status conic_sog_levels_read(const conic_gaussian_bytes *file, conic_gaussians *gaussians);
 conic_status conic_sog_read(const conic_gaussian_bytes *file, conic_gaussians *gaussians);
 conic_status conic_gaussian_gltf_read(const conic_gaussian_bytes *file, conic_gaussians *gaussians);
 

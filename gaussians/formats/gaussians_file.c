@@ -180,7 +180,8 @@ static int find_scene_kind(const char *path, const unsigned char *bytes, size_t 
     *kind = CONIC_GAUSSIANS_GLB;
   else if (is_json && names_gaussians(bytes, n))
     *kind = CONIC_GAUSSIANS_GLTF;
-  else if (is_json && conic_assimp_has_text(bytes, n, "\"means\"") && conic_assimp_has_text(bytes, n, "\"sh0\""))
+  else if (is_json && ((conic_assimp_has_text(bytes, n, "\"means\"") && conic_assimp_has_text(bytes, n, "\"sh0\"")) ||
+                       conic_assimp_has_text(bytes, n, "\"lodLevels\"")))
     *kind = CONIC_GAUSSIANS_SOG;
   else if (path && conic_file_has_ending(path, "splat"))
     *kind = CONIC_GAUSSIANS_SPLAT;
@@ -196,8 +197,12 @@ static const char *resolve_folder(const char *path, char room[4096]) {
   conic_disk_entry about;
   if (strcmp(path, "-") == 0 || !conic_disk_look(path, &about) || !about.is_folder)
     return path;
-  int n = snprintf(room, 4096, "%s/meta.json", path);
-  return n > 0 && n < 4096 && conic_file_is_there(room) ? room : path;
+  for (const char *name = "meta.json\0lod-meta.json\0"; *name; name += strlen(name) + 1) {
+    int n = snprintf(room, 4096, "%s/%s", path, name);
+    if (n > 0 && n < 4096 && conic_file_is_there(room))
+      return room;
+  }
+  return path;
 }
 
 /* Whether it is a scene, and one whose vertices are columns of a PLY. */
@@ -266,7 +271,8 @@ static conic_status read_scene_bytes(const conic_gaussian_bytes *file, conic_gau
     return conic_gaussian_bytes_wrong(
         file, 0,
         "no Gaussian scene that is known: a .ply, .compressed.ply, .splat, .ksplat, .spz, .sog, .gltf or .glb is");
-  conic_status status = kinds[kind].read(file, gaussians);
+  int is_levels = kind == CONIC_GAUSSIANS_SOG && conic_assimp_has_text(file->bytes, file->n_bytes, "\"lodLevels\"");
+  conic_status status = is_levels ? conic_sog_levels_read(file, gaussians) : kinds[kind].read(file, gaussians);
   gaussians->kind = kind;
   return status;
 }

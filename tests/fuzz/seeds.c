@@ -190,6 +190,9 @@ int main(int argc, char **argv) {
              "branch 1073741824 30 500\n");
   seeds_text(set, "filter", "lists", "classification = 2, 9 and not (intensity < 100 or z > 50)");
   seeds_text(set, "filter", "chain", "x >= -1.5e3 and y <= .5 or return_number != 1, 2, 3 and user_data = 7");
+  seeds_text(set, "gaussians", "json",
+             "{\"version\":1,\"lodLevels\":1,\"filenames\":[\"a.sog\"],\"tree\":{\"children\":[{\"lods\":{\"0\":"
+             "{\"file\":0,\"offset\":0,\"count\":1}}}]}}");
   for (int i = 0; i < set->n; i++)
     write_seed(argv[1], &set->seeds[i]);
   for (int i = 0; i < set->n; i++)

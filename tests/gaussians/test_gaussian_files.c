@@ -242,6 +242,60 @@ static void test_old_sog(conic_context *context) {
     CHECK(unlink(files_path(names[i])) == 0);
 }
 
+/* Streamed .sog: the files of level 0, each once, whichever leaves name them. */
+static void test_sog_levels(conic_context *context) {
+  static const char *const names[] = {"a.sog", "b.sog", "c.sog"};
+  static const char format[] =
+      "{\"lodLevels\":2,\"tree\":{\"bound\":{},\"children\":[{\"lods\":{\"1\":{\"file\":2,\"offset\":0,\"count\":1},"
+      "\"0\":"
+      "{\"file\":1,\"offset\":2,\"count\":1}}},{\"lods\":{\"%s\":{\"file\":%s,\"offset\":0,\"count\":5}}},{"
+      "\"children\":"
+      "[{\"lods\":{\"0\":{\"file\":1,\"offset\":0,\"count\":2}}}]}]},\"filenames\":[\"a.sog\",\"%s\",\"c.sog\"]}";
+  static const struct {
+    const char *level, *file, *name, *what;
+  } cases[] = {
+      {"0", "0", "b.sog", NULL},         {"0", "2", "b.sog", "several kinds"}, {"0", "3", "b.sog", "not named"},
+      {"0", "-1", "b.sog", "not named"}, {"0", "0", "../b.sog", "not beside"}, {"0", "0", "/b.sog", "not beside"},
+      {"0", "0", "d.sog", "d.sog"}};
+  conic_gaussians scene, parts[3];
+  char text[sizeof format + 64];
+  conic_gaussians_write_options options;
+  conic_gaussians_write_options_init(&options);
+  options.kind = CONIC_GAUSSIANS_SOG;
+  if (!gaussians_have(CONIC_GAUSSIANS_SOG))
+    return;
+  for (int i = 0; i < 3; i++) {
+    scene = gaussians_random(context, i == 0 ? 5 : 3, i == 2 ? 0 : 1, 0);
+    CHECK_OK(conic_gaussians_write(context, files_path(names[i]), &scene, &options));
+    CHECK_OK(conic_gaussians_read(context, files_path(names[i]), NULL, &parts[i]));
+    conic_gaussians_release(context, &scene);
+  }
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    snprintf(text, sizeof text, format, cases[i].level, cases[i].file, cases[i].name);
+    const char *path = files_write("lod-meta.json", text);
+    conic_status status = conic_gaussians_read(context, i ? path : files_folder, NULL, &scene);
+    if (cases[i].what)
+      files_check_failed(cases[i].what, status, cases[i].what, NULL);
+    else
+      CHECK(status == CONIC_OK && scene.count == 8 && scene.sh_degree == 1 && scene.kind == CONIC_GAUSSIANS_SOG);
+    for (size_t k = 0; k < 8 && status == CONIC_OK; k++) {
+      const conic_gaussians *part = &parts[k < 5 ? 0 : 1];
+      size_t at = k < 5 ? k : k - 5;
+      CHECK(scene.position[1][k] == part->position[1][at] && scene.opacity[k] == part->opacity[at]);
+      CHECK(memcmp(scene.sh + 12 * k, part->sh + 12 * at, 12 * sizeof(float)) == 0);
+    }
+    conic_gaussians_release(context, &scene);
+    CHECK(unlink(path) == 0);
+  }
+  const char *path = files_write("lod-meta.json", "{\"lodLevels\":1,\"tree\":{},\"filenames\":[]}");
+  files_check_failed("no leaf", conic_gaussians_read(context, path, NULL, &scene), "level 0", NULL);
+  CHECK(unlink(path) == 0);
+  for (int i = 0; i < 3; i++) {
+    conic_gaussians_release(context, &parts[i]);
+    CHECK(unlink(files_path(names[i])) == 0);
+  }
+}
+
 /* All levels of compression, and what no file can be. */
 static void test_ksplat(conic_context *context) {
   static unsigned char bytes[KSPLAT_ROOM];
@@ -565,6 +619,7 @@ int main(void) {
   test_splat(context);
   test_ksplat(context);
   test_old_sog(context);
+  test_sog_levels(context);
   test_spz(context);
   test_compressed(context);
   test_gltf(context);
