@@ -1,6 +1,6 @@
 /* Cameras for a source: one that its outline just fits; and which way is up. */
 
-#include "raster/view/drawing_frame.h"
+#include "raster/framing/drawing_frame.h"
 #include "source/source_samples.h"
 #include "source/upright.h"
 

@@ -10,6 +10,7 @@
 #include "raster/project/project_loops.h"
 #include "raster/tiles/tile_loops.h"
 #include "raster/triangles/triangle_loops.h"
+#include "raster/view/reach_loops.h"
 
 typedef struct conic_raster_loops {
   conic_project_loops project;
@@ -18,6 +19,7 @@ typedef struct conic_raster_loops {
   conic_resolve_loops resolve;
   conic_triangle_loops triangles;
   conic_texture_loops texture;
+  conic_reach_loops reach;
 } conic_raster_loops;
 
 CONIC_DECLARE_LOOPS(conic_raster_loops);

@@ -4,6 +4,7 @@
 #include "raster/loops/pass_body.h"
 #include "raster/loops/project_body.h"
 #include "raster/loops/raster_loops.h"
+#include "raster/loops/reach_body.h"
 #include "raster/loops/resolve_body.h"
 #include "raster/loops/triangle_body.h"
 
@@ -15,5 +16,6 @@ CONIC_FILL_LOOPS(conic_raster_loops) {
       .resolve = {.resolve = resolve},
       .triangles = {triangle_vertices, triangles_draw, triangles_hide, triangles_add},
       .texture = {.at_places = texture_at_places},
+      .reach = {bound_reach},
   };
 }

@@ -33,6 +33,7 @@ static inline void stream_record(void *to, const void *from, size_t bytes) {
   conic_stream_copy(to, from, bytes);
 }
 
+#include "raster/loops/reach_body.h"
 #include "raster/loops/sort_body.h"
 
 static size_t select_references(const conic_tile_entry *references, size_t n, uint32_t mask, uint32_t *footprints,
@@ -225,5 +226,6 @@ void conic_raster_loops_scalar(conic_raster_loops *loops) {
       .resolve = {.resolve = conic_band_resolve},
       .triangles = {conic_triangle_vertices, conic_triangles_draw, conic_triangles_hide, conic_triangles_add},
       .texture = {.at_places = texture_at_places},
+      .reach = {bound_reach},
   };
 }

@@ -3,7 +3,7 @@
 #include "core/base/memory.h"
 #include "core/base/random.h"
 #include "core/splats/shares.h"
-#include "raster/view/drawing_frame.h"
+#include "raster/framing/drawing_frame.h"
 #include "source/splat_exchange.h"
 #include "source/upright.h"
 #include "source/window_deal.h"

@@ -1,125 +1,19 @@
 /* Cameras that a drawing just fits: how far its outline reaches along the planes through the eye and the picture's
  * sides says where the eye has to be. */
-#include "raster/view/drawing_frame.h"
+#include "raster/framing/drawing_frame.h"
 
 #include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/image/framing.h"
 #include "core/splats/columns.h"
 #include "core/splats/near.h"
+#include "raster/framing/outline_reach.h"
 
 enum {
-  MEASURED_TOGETHER = 1 << 15, /* points */
-  MOST_TURNS = 24,             /* pictures of a turntable that are looked at: neighbours differ little */
-  N_SIDES = 5                  /* right, left, bottom and top of a picture, and what is nearest */
+  N_SIDES = 5, /* right, left, bottom and top of a picture, and what is nearest */
+  MOST_TURNS =
+      CONIC_REACH_DIRECTIONS / N_SIDES /* pictures of a turntable that are looked at: neighbours differ little */
 };
-
-/* How far points within a box reach along `n` directions from `center`. */
-typedef struct reach {
-  const conic_drawing *drawing;
-  const conic_splats_shares *shares; /* of its splats */
-  double cutoff, center[3];
-  double low[3], high[3]; /* from the center */
-  size_t n, n_splat_tasks;
-  double (*directions)[3];
-  double *farthest; /* a task has n */
-} reach;
-
-static void reach_of_point(const reach *r, const double from_center[3], const double u[3], const double v[3],
-                           double *farthest) {
-  for (int axis = 0; axis < 3; axis++)
-    if (!(from_center[axis] >= r->low[axis] && from_center[axis] <= r->high[axis]))
-      return;
-  for (size_t i = 0; i < r->n; i++) {
-    const double *direction = r->directions[i];
-    double along = conic_dot(direction, from_center);
-    if (u) {
-      double along_u = conic_dot(direction, u), along_v = conic_dot(direction, v);
-      double outline = r->cutoff * sqrt(along_u * along_u + along_v * along_v);
-      along += outline - outline == 0.0 ? outline : 0.0;
-    }
-    if (along > farthest[i])
-      farthest[i] = along;
-  }
-}
-
-static void take_at(float *const columns[3], size_t i, const double from[3], double to[3]) {
-  for (int axis = 0; axis < 3; axis++)
-    to[axis] = (double)columns[axis][i] + from[axis];
-}
-
-/* Of a splat with clip lines most is cut away, and its centre is where they meet: on the outline, if anything is. */
-static void reach_of_splats(const reach *r, size_t first, size_t end, double *farthest) {
-  static const double zero[3] = {0.0, 0.0, 0.0};
-  const conic_splats *s = r->drawing->splats;
-  double offset[3], place[3], u[3] = {0.0, 0.0, 0.0}, v[3] = {0.0, 0.0, 0.0};
-  size_t i_clip = 0;
-  conic_subtract(s->origin, r->center, offset);
-  while (i_clip < s->n_clips && s->clips[i_clip].splat < first)
-    i_clip++;
-  for (size_t i = first; i < end; i++) {
-    int is_clipped = i_clip < s->n_clips && s->clips[i_clip].splat == i;
-    i_clip += (size_t)is_clipped;
-    take_at(s->position, i, offset, place);
-    if (s->tangent_u[0] && !is_clipped) {
-      take_at(s->tangent_u, i, zero, u);
-      take_at(s->tangent_v, i, zero, v);
-    }
-    reach_of_point(r, place, s->tangent_u[0] && !is_clipped ? u : NULL, v, farthest);
-  }
-}
-
-static void reach_of_triangles(const reach *r, size_t first, size_t end, double *farthest) {
-  const conic_triangles *t = r->drawing->triangles;
-  double offset[3], place[3];
-  conic_subtract(t->origin, r->center, offset);
-  for (size_t i = first; i < end; i++)
-    for (int corner = 0; corner < 3; corner++) {
-      take_at(t->position, t->corners[i][corner], offset, place);
-      reach_of_point(r, place, NULL, NULL, farthest);
-    }
-}
-
-static void measure_reach_of_task(void *data, size_t i_item) {
-  const reach *r = data;
-  int is_splats = i_item < r->n_splat_tasks;
-  size_t count = is_splats ? r->drawing->splats->count : r->drawing->triangles->count;
-  size_t first = (is_splats ? i_item : i_item - r->n_splat_tasks) * MEASURED_TOGETHER;
-  size_t end = count - first < MEASURED_TOGETHER ? count : first + MEASURED_TOGETHER;
-  double *farthest = r->farthest + i_item * r->n;
-  for (size_t i = 0; i < r->n; i++)
-    farthest[i] = -HUGE_VAL;
-  (is_splats ? reach_of_splats : reach_of_triangles)(r, first, end, farthest);
-}
-
-static size_t tasks_for(size_t count) {
-  return (count + MEASURED_TOGETHER - 1) / MEASURED_TOGETHER;
-}
-
-static conic_status measure_own_reach(conic_context *context, size_t n_tasks, reach *r) {
-  conic_memory_release(context, r->farthest);
-  r->farthest = conic_memory_allocate(context, (n_tasks ? n_tasks : 1) * r->n, sizeof *r->farthest);
-  if (!r->farthest)
-    return CONIC_ERROR_MEMORY;
-  for (size_t i = 0; i < r->n; i++) /* of nothing */
-    r->farthest[i] = -HUGE_VAL;
-  return conic_parallel_told(context, "frame", 0.0, 1.0, n_tasks, measure_reach_of_task, r);
-}
-
-/* The farthest of all, into the first task's place. */
-static conic_status measure_reach(conic_context *context, reach *r) {
-  r->n_splat_tasks = tasks_for(r->drawing->splats->count);
-  size_t n_tasks = r->n_splat_tasks + tasks_for(r->drawing->triangles->count);
-  conic_status status = conic_team_agree(r->shares->team, measure_own_reach(context, n_tasks, r));
-  if (status != CONIC_OK)
-    return status;
-  for (size_t task = 1; task < n_tasks; task++)
-    for (size_t i = 0; i < r->n; i++)
-      if (r->farthest[task * r->n + i] > r->farthest[i])
-        r->farthest[i] = r->farthest[task * r->n + i];
-  conic_shares_take_greatest(r->shares, r->farthest, r->n);
-  return CONIC_OK;
-}
 
 /* A point (x, y, z) of camera axes about the centre, seen from z = -d, is left of the side of tangent t where
  * x - t·z ≤ t·d; and so on. */
@@ -137,7 +31,8 @@ typedef struct stand {
   double spans[2]; /* twice the distance from which the sides alone would be filled, times their tangents */
 } stand;
 
-static void find_stand(const reach *r, const double tangents[2], size_t n_turns, double least_gap, stand *found) {
+static void find_stand(const conic_outline_reach *r, const double tangents[2], size_t n_turns, double least_gap,
+                       stand *found) {
   double farthest[N_SIDES];
   for (int side = 0; side < N_SIDES; side++) {
     farthest[side] = r->farthest[side];
@@ -158,28 +53,37 @@ static void find_stand(const reach *r, const double tangents[2], size_t n_turns,
   }
 }
 
-static void set_turns(const conic_framing *framing, size_t n_turns, const double tangents[2], reach *r) {
+static void set_turns(const conic_framing *framing, size_t n_turns, const double tangents[2], double (*directions)[3]) {
   for (size_t turn = 0; turn < n_turns; turn++) {
     conic_framing turned = *framing;
     double rows[3][3];
     turned.azimuth_deg += 360.0 * (double)turn / (double)n_turns;
     conic_framing_rotation(&turned, rows);
-    set_sides(rows, tangents, r->directions + turn * N_SIDES);
+    set_sides(rows, tangents, directions + turn * N_SIDES);
   }
 }
 
 /* The side that does not decide is narrowed until it touches as well: only then the outline is in the middle. */
-static conic_status find_eye(conic_context *context, const conic_framing *framing, size_t n_turns, double least_gap,
-                             reach *r, stand *found) {
-  enum { N_ROUNDS = 6 };
+static conic_status find_eye(conic_context *context, const conic_splats_shares *shares, const conic_framing *framing,
+                             size_t n_turns, double least_gap, conic_outline_reach *r, stand *found) {
+  int n_rounds = n_turns > 1 ? 2 : 6; /* of many pictures none is met exactly */
   double part = CONIC_FRAMING_PART, greatest = 0.0;
-  double tangents[2] = {part * conic_framing_tangent(framing, framing->width),
-                        part * conic_framing_tangent(framing, framing->height)};
-  for (int round = 0; round < (n_turns > 1 ? 2 : N_ROUNDS); round++) { /* of many pictures none is met exactly */
-    set_turns(framing, n_turns, tangents, r);
-    conic_status status = measure_reach(context, r);
+  const double widest[2] = {part * conic_framing_tangent(framing, framing->width),
+                            part * conic_framing_tangent(framing, framing->height)};
+  double tangents[2] = {widest[0], widest[1]};
+  set_turns(framing, n_turns, widest, r->wide);
+  set_turns(framing, n_turns, (const double[2]){0.0, 0.0}, r->narrow);
+  conic_status status = conic_team_agree(shares->team, conic_reach_open(context, r));
+  for (int round = 0; status == CONIC_OK && round < n_rounds; round++) {
+    set_turns(framing, n_turns, tangents, r->directions);
+    for (size_t i = 0; i < r->n; i++) {
+      size_t side = i % N_SIDES;
+      r->parts[i] = side == 4 ? 1.0 : tangents[side / 2] / widest[side / 2];
+    }
+    status = conic_team_agree(shares->team, conic_reach_measure(context, r));
     if (status != CONIC_OK)
-      return status;
+      break;
+    conic_shares_take_greatest(shares, r->farthest, r->n);
     find_stand(r, tangents, n_turns, least_gap, found);
     if (found->distance > greatest)
       greatest = found->distance;
@@ -190,7 +94,8 @@ static conic_status find_eye(conic_context *context, const conic_framing *framin
         tangents[axis] = touched;
     }
   }
-  return CONIC_OK;
+  conic_reach_close(context, r);
+  return status;
 }
 
 /* --- strays --- */
@@ -251,7 +156,7 @@ static conic_status frame_entered(conic_context *context, const conic_splats_sha
                                   size_t n_turns, conic_camera *camera, double *near_z) {
   double low[3], high[3], diagonal[3], rows[3][3];
   stand found;
-  reach r = {.drawing = drawing, .shares = shares, .cutoff = (double)cutoff, .n = n_turns * N_SIDES};
+  conic_outline_reach r = {.drawing = drawing, .cutoff = (double)cutoff, .n = n_turns * N_SIDES};
   size_t n_finite = find_shared_bounds(shares, drawing, low, high);
   *near_z = conic_near_of_box(low, high);
   if (n_finite == 0)
@@ -267,18 +172,13 @@ static conic_status frame_entered(conic_context *context, const conic_splats_sha
     r.high[i] = high[i] - r.center[i] + margin;
   }
   double size = conic_length(diagonal);
-  r.directions = conic_memory_allocate(context, r.n, sizeof *r.directions);
-  status = conic_team_agree(shares->team, r.directions ? CONIC_OK : CONIC_ERROR_MEMORY);
-  if (status == CONIC_OK)
-    status = find_eye(context, framing, n_turns, size > 0.0 ? 0.05 * size : 1.0, &r, &found);
+  status = find_eye(context, shares, framing, n_turns, size > 0.0 ? 0.05 * size : 1.0, &r, &found);
   if (status == CONIC_OK) {
     const double at[3] = {-found.beside[0], -found.beside[1], found.distance};
     conic_framing_rotation(framing, rows);
     conic_framing_camera(framing, rows, r.center, at, camera);
     *near_z = size > 0.0 ? 1e-4 * size : 1e-4;
   }
-  conic_memory_release(context, r.directions);
-  conic_memory_release(context, r.farthest);
   return status;
 }
 
