@@ -30,7 +30,8 @@ static void choose_chunks(conic_raster_frame *f) {
 }
 
 static conic_status plan_records(conic_raster_frame *f) {
-  choose_chunks(f);
+  if (!f->projected.band) /* else they stay what they were */
+    choose_chunks(f);
   conic_renderer *renderer = f->renderer;
   conic_context *context = renderer->context;
   conic_projected *projected = &f->projected;
@@ -86,8 +87,25 @@ static conic_status plan_tiles(conic_raster_frame *f, int tile) {
   return CONIC_OK;
 }
 
+static void project_chunk(conic_raster_frame *f, size_t begin, size_t end, int i_thread, conic_sorter *sorter) {
+  conic_projected *projected = &sorter->projected;
+  projected->bands = f->projected.bands;
+  projected->band = f->projected.band;
+  f->loops.project.project(&f->view, f->splats, begin, end, projected, &sorter->chunk);
+  if (projected->clips)
+    conic_clip_chunk(&f->view, f->splats, begin, projected, &sorter->chunk);
+  if (f->part.is_counted)
+    conic_chunk_count_others(&f->view, f->splats, begin, end, f->part.is_counted, projected, &sorter->chunk,
+                             &f->others[i_thread]);
+  if (projected->bands && !projected->band)
+    conic_chunk_find_bands(f->band_bits, projected, &sorter->chunk);
+  if (f->is_part)
+    conic_chunk_keep_window(&f->part.window, projected, &sorter->chunk);
+}
+
 static void project_task(void *data, size_t i_chunk, int i_thread) {
   conic_raster_frame *f = data;
+  unsigned bands = f->projected.band ? f->projected.chunks[i_chunk].bands : 0;
   conic_sorter sorter;
   size_t n = f->splats->count, begin = i_chunk * f->projected.chunk_size, end = begin + f->projected.chunk_size;
   uint64_t start = conic_ticks();
@@ -95,14 +113,9 @@ static void project_task(void *data, size_t i_chunk, int i_thread) {
   conic_sorter_place(&f->bins, f->projected.chunk_size, f->splats->n_clips > 0, f->projected.rays,
                      f->sorters + (size_t)i_thread * f->sorter_bytes, &sorter);
   sorter.chunk.first_ray = begin;
-  f->loops.project.project(&f->view, f->splats, begin, end, &sorter.projected, &sorter.chunk);
-  if (sorter.projected.clips)
-    conic_clip_chunk(&f->view, f->splats, begin, &sorter.projected, &sorter.chunk);
-  if (f->part.is_counted)
-    conic_chunk_count_others(&f->view, f->splats, begin, end, f->part.is_counted, &sorter.projected, &sorter.chunk,
-                             &f->others[i_thread]);
-  if (f->is_part)
-    conic_chunk_keep_window(&f->part.window, &sorter.projected, &sorter.chunk);
+  sorter.chunk.bands = bands;
+  if (!f->projected.band || f->projected.band & bands)
+    project_chunk(f, begin, end, i_thread, &sorter);
   uint64_t projected = conic_ticks();
   conic_bins_sort(&f->bins, &f->loops.bins, &sorter, i_chunk, &f->projected);
   f->times[i_thread].setup += projected - start;

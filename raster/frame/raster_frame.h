@@ -11,9 +11,10 @@ struct conic_renderer {
   conic_context *context;
   conic_backend *backend; /* null: the loops here */
   conic_kept_memory footprints, surfaces, rays, clips, chunks, chunk_begin, tile_begin, tile_counts, entries, sorters,
-      scratch, times, lengths, others, tile_order;
+      scratch, times, lengths, others, tile_order, bands;
   conic_triangle_frame triangles;
-  unsigned slips; /* raster/view/slips.h */
+  unsigned slips;      /* raster/view/slips.h */
+  size_t most_records; /* conic_renderer_bound_records; 0: the default */
 };
 
 /* What lies in the renderer's memory stays until its next frame. */
@@ -28,11 +29,13 @@ typedef struct conic_raster_frame {
   conic_isa isa;
   conic_raster_loops loops;
   conic_image *image;
-  conic_part part;         /* the pixels that the tiles are of */
-  int is_part;             /* they are not the whole picture */
-  conic_chunk *others;     /* a thread: what is not counted */
-  float *hiding;           /* in the place of an image; else null */
-  char *sorters, *scratch; /* of chunks and of tiles, a thread */
+  conic_part part;                       /* the pixels that the tiles are of */
+  int is_part;                           /* they are not the whole picture */
+  int band_bits;                         /* of a picture in bands: how high one is, as a binary logarithm */
+  size_t n_tiles_before, n_tiles_of_all; /* of all bands; 0: there are none */
+  conic_chunk *others;                   /* a thread: what is not counted */
+  float *hiding;                         /* in the place of an image; else null */
+  char *sorters, *scratch;               /* of chunks and of tiles, a thread */
   size_t sorter_bytes, scratch_bytes;
   conic_triangle_frame *triangles;   /* null: there are none */
   conic_stage_ticks *times;          /* a thread: what shares the wall-clock out */
@@ -68,6 +71,9 @@ conic_stage_ticks conic_raster_frame_ticks(conic_raster_frame *frame);
 
 /* Sets what became of all that is drawn, and by what settings. */
 void conic_raster_frame_count(const conic_raster_frame *frame, conic_render_statistics *statistics);
+
+/* Notes which bands of 2^band_bits rows the splats of the chunk meet, which is alone in `projected`. */
+void conic_chunk_find_bands(int band_bits, conic_projected *projected, conic_chunk *chunk);
 
 /* Drops the records of a chunk that do not meet the window. The boxes of the others are cut off at the window's ends,
  * and then count from where it begins. The chunk is alone in `projected`. */

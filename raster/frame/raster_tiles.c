@@ -28,8 +28,9 @@ static void begin_tile(const conic_raster_frame *f, size_t i_tile, int i_thread,
 
 /* Tells the caller's progress callback, which runs on its own thread, how far the tiles are. */
 static void report_progress(conic_raster_frame *f) {
-  size_t done = atomic_load(&f->n_tiles_done);
-  if (conic_progress(f->renderer->context, "render", (double)done / (double)f->n_drawn_tiles) != CONIC_OK)
+  size_t done = f->n_tiles_before + atomic_load(&f->n_tiles_done);
+  size_t n = f->n_tiles_of_all ? f->n_tiles_of_all : f->n_drawn_tiles;
+  if (conic_progress(f->renderer->context, "render", (double)done / (double)n) != CONIC_OK)
     atomic_store(&f->is_cancelled, 1);
 }
 
@@ -158,5 +159,8 @@ conic_status conic_raster_frame_draw(conic_raster_frame *f, const conic_window *
     statistics->pixels_covered += f->n_covered[i_tile];
   }
   statistics->triangle_fragments += atomic_load(&f->n_triangle_fragments);
-  return atomic_load(&f->is_cancelled) ? CONIC_ERROR_CANCELLED : conic_progress(context, "render", 1.0);
+  f->n_tiles_before += f->n_tiles_of_all ? f->n_drawn_tiles : 0;
+  if (atomic_load(&f->is_cancelled))
+    return CONIC_ERROR_CANCELLED;
+  return f->n_tiles_before < f->n_tiles_of_all ? CONIC_OK : conic_progress(context, "render", 1.0);
 }

@@ -1,3 +1,5 @@
+#include <limits.h>
+
 #include "core/base/base.h"
 #include "core/splats/near.h"
 #include "raster/frame/raster_frame.h"
@@ -13,9 +15,10 @@ conic_status conic_renderer_create(conic_context *context, conic_renderer **rend
 
 void conic_renderer_give_back(conic_renderer *renderer) {
   conic_kept_memory *all[] = {
-      &renderer->footprints,  &renderer->surfaces,   &renderer->rays,        &renderer->clips,   &renderer->chunks,
-      &renderer->chunk_begin, &renderer->tile_begin, &renderer->tile_counts, &renderer->entries, &renderer->sorters,
-      &renderer->scratch,     &renderer->times,      &renderer->lengths,     &renderer->others,  &renderer->tile_order};
+      &renderer->footprints, &renderer->surfaces,    &renderer->rays,       &renderer->clips,
+      &renderer->chunks,     &renderer->chunk_begin, &renderer->tile_begin, &renderer->tile_counts,
+      &renderer->entries,    &renderer->sorters,     &renderer->scratch,    &renderer->times,
+      &renderer->lengths,    &renderer->others,      &renderer->tile_order, &renderer->bands};
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
     conic_memory_release(renderer->context, all[i]->pointer);
     *all[i] = (conic_kept_memory){NULL, 0};
@@ -84,14 +87,56 @@ double conic_default_near(const conic_splats *splats) {
   return conic_near_of_box(low, high);
 }
 
-/* By the loops of this machine's processor. */
-static conic_status draw_here(conic_raster_frame *f, conic_image *image, conic_render_statistics *statistics) {
+void conic_renderer_bound_records(conic_renderer *renderer, size_t most) {
+  renderer->most_records = most;
+}
+
+/* The window, which is the whole picture or a part that is drawn at once. */
+static conic_status draw_window(conic_raster_frame *f, conic_image *image, conic_render_statistics *statistics) {
   unsigned planes = image ? conic_image_planes(image) : 0;
   conic_status status = conic_raster_frame_set_up(f, planes, &statistics->ms);
   if (status == CONIC_OK)
     status = conic_raster_frame_draw(f, &f->part.window, image, statistics);
-  if (status == CONIC_OK)
+  if (status == CONIC_OK && !f->projected.band) /* the first band has met all splats */
     conic_raster_frame_count(f, statistics);
+  return status;
+}
+
+/* How high bands are, of which each has about as many records as a renderer's first picture has room for. */
+static int choose_band_bits(const conic_raster_frame *f) {
+  const conic_renderer *renderer = f->renderer;
+  size_t most = renderer->most_records ? renderer->most_records : (size_t)3 << 19;
+  size_t n_bands = f->splats->count / most + 1;
+  int height = f->part.window.y_end, bits = __builtin_ctz((unsigned)f->finish.options->tile);
+  if (n_bands == 1 || f->is_part || f->hiding || f->triangles || renderer->footprints.pointer)
+    return CHAR_BIT * (int)sizeof height - 2;
+  while ((size_t)2 << bits <= (size_t)height / n_bands || (CHAR_BIT << bits) < height)
+    bits++;
+  return bits;
+}
+
+/* By the loops of this machine's processor: in bands, of which each writes its records over those before, as touching
+ * memory takes longer than setting up again what bands share. What has been touched serves all later pictures. */
+static conic_status draw_here(conic_raster_frame *f, conic_image *image, conic_render_statistics *statistics) {
+  conic_context *context = f->renderer->context;
+  int bits = choose_band_bits(f), height = f->part.window.y_end;
+  size_t tile = (size_t)f->finish.options->tile, n = f->splats->count;
+  if (height <= 1 << bits)
+    return draw_window(f, image, statistics);
+  f->projected.bands = conic_keep_room(context, &f->renderer->bands, n, sizeof *f->projected.bands);
+  if (!f->projected.bands)
+    return CONIC_ERROR_MEMORY;
+  memset(f->projected.bands, 0, n);
+  f->is_part = 1;
+  f->band_bits = bits;
+  f->n_tiles_of_all = (((size_t)f->part.window.x_end + tile - 1) / tile) * (((size_t)height + tile - 1) / tile);
+  conic_status status = CONIC_OK;
+  for (int band = 0; band << bits < height && status == CONIC_OK; band++) {
+    f->projected.band = band ? 1u << band : 0;
+    f->part.window.y_begin = band << bits;
+    f->part.window.y_end = (band + 1) << bits < height ? (band + 1) << bits : height;
+    status = draw_window(f, image, statistics);
+  }
   return status;
 }
 

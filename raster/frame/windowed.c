@@ -9,6 +9,15 @@ static void cut_off(int low, int high, uint16_t *begin, uint16_t *end) {
   *end = (uint16_t)(last > first ? last - low : first - low);
 }
 
+void conic_chunk_find_bands(int band_bits, conic_projected *projected, conic_chunk *chunk) {
+  for (size_t i = 0; i < chunk->n_drawn; i++) {
+    const conic_box *box = &projected->boxes[i];
+    unsigned meets = (2u << ((box->y_end - 1) >> band_bits)) - (1u << (box->y_begin >> band_bits));
+    projected->bands[projected->surfaces[i].index] = (unsigned char)meets;
+    chunk->bands |= meets;
+  }
+}
+
 void conic_chunk_keep_window(const conic_window *window, conic_projected *projected, conic_chunk *chunk) {
   size_t n = 0;
   for (size_t i = 0; i < chunk->n_drawn; i++) {

@@ -107,7 +107,7 @@ static void project(const conic_view *view, const conic_splats *splats, size_t b
   begin_batches(&packed);
   for (size_t first = begin; first < end; first += BATCH) {
     size_t n = end - first < BATCH ? end - first : BATCH, n_before = packed.n;
-    pack_batch(view, splats, first, n, &packed);
+    pack_batch(view, splats, first, n, projected, &packed);
     chunk->n_culled += n - (packed.n - n_before);
     size_t n_due = first + n < end ? packed.n - packed.n % CONIC_LANES : fill_last_group(&packed);
     for (size_t i = 0; i < n_due; i += CONIC_LANES)

@@ -35,13 +35,23 @@ CONIC_INLINE void append_columns(const float *const columns[N_COLUMNS], size_t i
     }
 }
 
-/* Appends those of the n splats from `first` on that do not surely face away. */
-static void pack_batch(const conic_view *view, const conic_splats *splats, size_t first, size_t n, batch *to) {
+/* Which of CONIC_LANES splats meet the band. */
+CONIC_INLINE lanes_mask meet_band(const unsigned char *bands, unsigned band) {
+  typedef unsigned char byte_lanes __attribute__((vector_size(CONIC_LANES)));
+  byte_lanes bytes;
+  memcpy(&bytes, bands, sizeof bytes);
+  return lanes_has_bits(__builtin_convertvector(bytes, index_lanes), band);
+}
+
+/* Appends those of the n splats from `first` on that do not surely face away, or meet the band. */
+static void pack_batch(const conic_view *view, const conic_splats *splats, size_t first, size_t n,
+                       const conic_projected *projected, batch *to) {
   const float *columns[N_COLUMNS];
   size_t i = 0, n_packed = to->n;
   find_columns(splats, first, columns);
-  for (; view->cull_back && i + CONIC_LANES <= n; i += CONIC_LANES) {
-    lanes_mask kept = lanes_not(columns_face_away(view, columns, i));
+  for (; (view->cull_back || projected->band) && i + CONIC_LANES <= n; i += CONIC_LANES) {
+    lanes_mask kept = projected->band ? meet_band(projected->bands + first + i, projected->band)
+                                      : lanes_not(columns_face_away(view, columns, i));
     append_columns(columns, i, kept, to, n_packed);
     n_packed += lanes_append(to->index + n_packed, kept, lanes_ascending((uint32_t)(first + i)));
   }

@@ -515,7 +515,8 @@ void conic_project_one(const conic_view *view, const conic_splats *splats, size_
 void conic_project_range(const conic_view *view, const conic_splats *splats, size_t begin, size_t end,
                          conic_projected *projected, conic_chunk *chunk) {
   for (size_t i = begin; i < end; i++)
-    conic_project_one(view, splats, i, projected, chunk);
+    if (!projected->band || projected->bands[i] & projected->band)
+      conic_project_one(view, splats, i, projected, chunk);
 }
 
 void conic_project_chunk(const conic_view *view, const conic_splats *splats, size_t i_chunk,

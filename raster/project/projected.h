@@ -98,6 +98,7 @@ typedef struct conic_chunk {
   size_t n_laplaces;        /* of them */
   size_t n_culled, n_skipped, n_fallback;
   size_t n_elsewhere; /* drawn in the picture, and not in the window (raster/frame/windowed.c) */
+  unsigned bands;     /* of conic_projected: those that its splats meet */
 } conic_chunk;
 
 /* Projected splats, chunk by chunk, each in file order until raster/tiles/bins.h sorts it. The arrays have room for
@@ -110,6 +111,10 @@ typedef struct conic_projected {
   conic_projected_surface *surfaces;
   conic_ray *rays;
   struct conic_clip_record *clips; /* of the footprints that are marked; null where the set has no clip lines */
+  /* Of a picture that is drawn in bands: a bit for each that a splat meets, and the band whose splats alone are
+   * projected, or 0: all are. */
+  unsigned char *bands;
+  unsigned band;
 } conic_projected;
 
 /* Projects splat i, the next of its chunk, and appends it to the chunk where it is drawn. */

@@ -21,6 +21,10 @@ int conic_renderer_has_parts(const conic_renderer *renderer);
 /* An error where it does not: UNSUPPORTED. */
 conic_status conic_renderer_check_parts(const conic_renderer *renderer);
 
+/* How many splats the first picture of a renderer may have until it is drawn in bands of rows, and how many records,
+ * about, a band has then; 0: one and a half million. No bit depends on it. */
+void conic_renderer_bound_records(conic_renderer *renderer, size_t most);
+
 /* Gives back the memory that is kept from picture to picture. */
 void conic_renderer_give_back(conic_renderer *renderer);
 
