@@ -8,15 +8,19 @@ static size_t pixel_at(const conic_edge_spread *s, size_t x, size_t y) {
   return y * (size_t)s->image->width + x;
 }
 
-/* How much deeper a neighbour on the same surface may be. */
+/* How much deeper a neighbour may be on the same surface, which is seen at an angle with this cosine. */
+static float step_at(const conic_edge_spread *s, float cosine) {
+  static const float steps = 4.0f;
+  return steps * (s->epsilon + (float)s->receivers->spacing / cosine);
+}
+
 static float depth_of_step(const conic_edge_spread *s, size_t x, size_t y) {
-  static const float steps = 4.0f, least_cosine = 0.03f;
+  static const float least_cosine = 0.03f;
   const float *n = (const float *)s->image->planes[CONIC_PLANE_NORMAL] + 3 * pixel_at(s, x, y);
   float viewer[3];
   conic_pixel_viewer(&s->rays, x, y, viewer);
   float cosine = (n[0] * viewer[0] + n[1] * viewer[1]) + n[2] * viewer[2];
-  cosine = cosine > least_cosine ? cosine : least_cosine;
-  return steps * (s->epsilon + (float)s->receivers->spacing / cosine);
+  return step_at(s, cosine > least_cosine ? cosine : least_cosine);
 }
 
 /* The pixels at most so many away as splats stick out, without those beyond the picture's edges. */
@@ -30,21 +34,28 @@ static pixel_range pixels_about(const conic_edge_spread *s, size_t x, size_t y) 
                        y + reach < height ? y + reach + 1 : height};
 }
 
+/* Whether no pixel is farther from `here` than the step. */
+static int is_one_surface(const conic_edge_spread *s, const pixel_range *range, float here, float step) {
+  const float *z = s->image->planes[CONIC_PLANE_Z];
+  float least = s->samples > 1 ? here - step : 0.0f;
+  for (size_t j = range->top; j < range->bottom; j++)
+    for (size_t i = range->left; i < range->right; i++) {
+      float there = z[pixel_at(s, i, j)];
+      if (!(there > least) || there > here + step)
+        return 0;
+    }
+  return 1;
+}
+
 /* Whether a pixel is at an edge, where it should not use its own light. Splats stick out where a surface turns away.
  * Those of the far side are then seen from behind: they take the visible side for their outer one, on which there is no
  * light. And several samples on two surfaces have a mean normal that is neither's. */
 static int is_at_edge(const conic_edge_spread *s, size_t x, size_t y) {
-  const float *z = s->image->planes[CONIC_PLANE_Z];
-  float here = z[pixel_at(s, x, y)], step = depth_of_step(s, x, y);
-  float least = s->samples > 1 ? here - step : 0.0f;
+  static const float greatest_cosine = 1.5f; /* the normals of receivers are at most √2 long */
+  float here = ((const float *)s->image->planes[CONIC_PLANE_Z])[pixel_at(s, x, y)];
   pixel_range range = pixels_about(s, x, y);
-  for (size_t j = range.top; j < range.bottom; j++)
-    for (size_t i = range.left; i < range.right; i++) {
-      float there = z[pixel_at(s, i, j)];
-      if (!(there > least) || there > here + step)
-        return 1;
-    }
-  return 0;
+  return !is_one_surface(s, &range, here, step_at(s, greatest_cosine)) &&
+         !is_one_surface(s, &range, here, depth_of_step(s, x, y));
 }
 
 static void find_receivers_at_edges(void *data, size_t y) {
@@ -94,15 +105,12 @@ static int mean_about(const conic_edge_spread *s, size_t x, size_t y, unsigned c
   return n > 0.0f;
 }
 
-/* What a pixel gets: a receiver its own value; a receiver at an edge the mean of its surface's receivers around it; a
- * pixel that is no receiver, but at the border of what is drawn, the mean of the receivers around it. */
+/* What a pixel gets that is neither a receiver, which gets its own value, nor alone: one at an edge the mean of its
+ * surface's receivers around it; a pixel that is no receiver, but at the border of what is drawn, the mean of the
+ * receivers around it. */
 static float spread_at(const conic_edge_spread *s, size_t x, size_t y) {
   size_t pixel = pixel_at(s, x, y);
   float mean;
-  if (s->kind[pixel] == RECEIVER)
-    return s->own[pixel];
-  if (s->is_alone[pixel])
-    return s->otherwise;
   if (s->kind[pixel] == RECEIVER_AT_EDGE) {
     float z = ((const float *)s->image->planes[CONIC_PLANE_Z])[pixel], step = depth_of_step(s, x, y);
     return mean_about(s, x, y, RECEIVER, z - step, z + step, &mean) ? mean : s->own[pixel];
@@ -115,8 +123,14 @@ static float spread_at(const conic_edge_spread *s, size_t x, size_t y) {
 
 static void fill_row(void *data, size_t y) {
   const conic_edge_spread *s = data;
-  for (size_t x = 0; x < (size_t)s->image->width; x++)
-    s->filled[pixel_at(s, x, y)] = spread_at(s, x, y);
+  size_t width = (size_t)s->image->width, first = pixel_at(s, 0, y);
+  const unsigned char *kind = s->kind + first, *is_alone = s->is_alone + first;
+  float *filled = s->filled + first;
+  for (size_t x = 0; x < width; x++)
+    filled[x] = kind[x] == RECEIVER ? s->own[first + x] : s->otherwise;
+  for (size_t x = 0; x < width; x++)
+    if (kind[x] != RECEIVER && !is_alone[x])
+      filled[x] = spread_at(s, x, y);
 }
 
 void conic_edge_spread_fill(conic_edge_spread *s, const float *of_receivers, float otherwise) {

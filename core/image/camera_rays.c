@@ -72,6 +72,7 @@ void conic_camera_rays_init(const conic_camera *camera, conic_camera_rays *r) {
   int is_fisheye = camera->kind == CONIC_CAMERA_FISHEYE;
   memset(r, 0, sizeof *r);
   r->camera = camera;
+  r->is_pinhole = camera->kind == CONIC_CAMERA_PERSPECTIVE && camera->lens == CONIC_LENS_NONE;
   r->top[0] = r->bottom[0] = 1.0;
   if (camera->lens == CONIC_LENS_RADIAL) {
     memcpy(r->top + 1, k, 4 * sizeof *k);
@@ -176,7 +177,7 @@ static void ray_of_cube(const conic_camera *camera, double x_px, double y_px, do
     direction[axis] = (at[0] * axes[0][axis] + at[1] * axes[1][axis]) + axes[2][axis];
 }
 
-int conic_camera_ray(const conic_camera_rays *r, double x_px, double y_px, double origin[3], double direction[3]) {
+int conic_camera_ray_bent(const conic_camera_rays *r, double x_px, double y_px, double origin[3], double direction[3]) {
   const conic_camera *camera = r->camera;
   double at[2] = {(x_px - camera->cx) / camera->fx, (y_px - camera->cy) / camera->fy};
   origin[0] = origin[1] = origin[2] = direction[0] = direction[1] = 0.0;

@@ -15,12 +15,27 @@ typedef struct conic_camera_rays {
   double top[5], bottom[4], tangential[2], prism[2];
   double most_radius, most_place; /* the radius √s, and its distorted radius, up to which the distorted radius grows */
   int is_bent;                    /* tangential or prism is not zero */
+  int is_pinhole;                 /* perspective, without a lens */
 } conic_camera_rays;
 
 void conic_camera_rays_init(const conic_camera *camera, conic_camera_rays *rays);
+
+/* conic_camera_ray of a camera of any kind. */
+int conic_camera_ray_bent(const conic_camera_rays *rays, double x_px, double y_px, double origin[3],
+                          double direction[3]);
 
 /* The ray through a place of the picture, in pixels, in camera space: origin + z·direction. For perspective and
  * orthographic cameras the direction's z is 1, and z is the depth; so it is for a cube's side in the side's own axes.
  * Other cameras have unit directions, and z is the distance from the eye. Returns 0 where no ray goes through the
  * place: the camera sees no direction there, or the lens has no single one. */
-int conic_camera_ray(const conic_camera_rays *rays, double x_px, double y_px, double origin[3], double direction[3]);
+static inline int conic_camera_ray(const conic_camera_rays *rays, double x_px, double y_px, double origin[3],
+                                   double direction[3]) {
+  const conic_camera *camera = rays->camera;
+  if (!rays->is_pinhole)
+    return conic_camera_ray_bent(rays, x_px, y_px, origin, direction);
+  origin[0] = origin[1] = origin[2] = 0.0;
+  direction[0] = (x_px - camera->cx) / camera->fx;
+  direction[1] = (y_px - camera->cy) / camera->fy;
+  direction[2] = 1.0;
+  return 1;
+}
