@@ -30,9 +30,13 @@ static int axes_normal(float *const tangent_u[3], float *const tangent_v[3], siz
 /* Axes that span no ellipse but are not zero, such as two parallel ones, are the file's own and kept: the renderer
  * draws them as far as it can. */
 static int has_good_axes(const conic_splats *points, size_t point) {
-  double unit[3];
-  return points->tangent_u[0] && conic_unit_vector(points->tangent_u, point, unit) &&
-         conic_unit_vector(points->tangent_v, point, unit);
+  double u[3], v[3];
+  if (!points->tangent_u[0])
+    return 0;
+  conic_vector_at(points->tangent_u, point, u);
+  conic_vector_at(points->tangent_v, point, v);
+  double square_u = conic_dot(u, u), square_v = conic_dot(v, v);
+  return square_u > 0.0 && square_v > 0.0 && square_u - square_u == 0.0 && square_v - square_v == 0.0;
 }
 
 static int has_bad_color(const conic_splats *points, size_t point) {

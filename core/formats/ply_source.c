@@ -262,7 +262,15 @@ int conic_ply_is_plain(conic_ply_format format, const conic_ply_element *element
   return format != CONIC_PLY_TEXT && !element->has_lists && element->least_row_bytes <= CONIC_INPUT_WINDOW;
 }
 
-/* Column by column, straight from the window. */
+void conic_ply_convert_rows(const conic_ply_source *source, const conic_ply_property *properties, const int *columns,
+                            int n_columns, const unsigned char *bytes, size_t n, size_t stride, double *values) {
+  for (int k = 0; k < n_columns; k++)
+    if (columns[k] >= 0)
+      conic_ply_convert(bytes + properties[columns[k]].row_offset, source->element->least_row_bytes, n,
+                        properties[columns[k]].type, source->format, values + (size_t)k * stride);
+}
+
+/* Straight from the window. */
 static conic_status read_plain_rows(conic_ply_source *source, const conic_ply_property *properties, const int *columns,
                                     int n_columns, size_t stride, size_t *n, double *values) {
   conic_input *input = source->input;
@@ -274,10 +282,7 @@ static conic_status read_plain_rows(conic_ply_source *source, const conic_ply_pr
   if (n_there == 0)
     return conic_ply_truncated(source);
   *n = n_there < *n ? n_there : *n;
-  for (int k = 0; k < n_columns; k++)
-    if (columns[k] >= 0)
-      conic_ply_convert(conic_input_bytes(input) + properties[columns[k]].row_offset, row_bytes, *n,
-                        properties[columns[k]].type, source->format, values + (size_t)k * stride);
+  conic_ply_convert_rows(source, properties, columns, n_columns, conic_input_bytes(input), *n, stride, values);
   input->next += *n * row_bytes;
   source->i_row += *n;
   return CONIC_OK;

@@ -43,6 +43,10 @@ int conic_ply_is_plain(conic_ply_format format, const conic_ply_element *element
 conic_status conic_ply_read_rows(conic_ply_source *source, const conic_ply_property *properties, const int *columns,
                                  int n_columns, size_t stride, size_t *n, double *values);
 
+/* The same of n rows, plain ones, which have been read. */
+void conic_ply_convert_rows(const conic_ply_source *source, const conic_ply_property *properties, const int *columns,
+                            int n_columns, const unsigned char *bytes, size_t n, size_t stride, double *values);
+
 /* Values of one type, `stride` bytes apart, as doubles. */
 void conic_ply_convert(const unsigned char *bytes, size_t stride, size_t n, conic_ply_type type,
                        conic_ply_format format, double *values);

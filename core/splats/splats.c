@@ -1,3 +1,6 @@
+#include <math.h>
+
+#include "core/lanes/lanes.h"
 #include "core/splats/columns.h"
 #include "core/splats/point_values.h"
 #include "core/splats/splats_gather.h"
@@ -158,19 +161,50 @@ conic_status conic_splats_gather(conic_context *context, const conic_splats *fro
   return CONIC_OK;
 }
 
+/* Bounds columns side by side, several points at a time, from the first on; returns where it ends. */
+static size_t bound_columns(float *const position[3], size_t n, float low[3], float high[3], size_t *n_finite) {
+  const lanes zero = lanes_of(0.0f);
+  lanes lows[3], highs[3];
+  size_t end = n - n % CONIC_LANES;
+  for (int axis = 0; axis < 3; axis++) {
+    lows[axis] = lanes_of(INFINITY);
+    highs[axis] = lanes_of(-INFINITY);
+  }
+  for (size_t k = 0; k < end; k += CONIC_LANES) {
+    lanes at[3], nothing = zero; /* not a number where a coordinate is not finite: it is neither below nor above */
+    for (int axis = 0; axis < 3; axis++) {
+      at[axis] = lanes_load(position[axis] + k);
+      nothing = nothing + at[axis] * zero;
+    }
+    *n_finite += lanes_count(lanes_at_least(nothing, zero));
+    for (int axis = 0; axis < 3; axis++) {
+      lows[axis] = lanes_min(at[axis] + nothing, lows[axis]);
+      highs[axis] = lanes_max(at[axis] + nothing, highs[axis]);
+    }
+  }
+  for (int axis = 0; axis < 3; axis++)
+    for (int lane = 0; lane < CONIC_LANES; lane++) {
+      low[axis] = lows[axis][lane] < low[axis] ? lows[axis][lane] : low[axis];
+      high[axis] = highs[axis][lane] > high[axis] ? highs[axis][lane] : high[axis];
+    }
+  return end;
+}
+
 size_t conic_points_bounds(float *const position[3], size_t stride, const double origin[3], const uint32_t *indices,
                            size_t n, double minimum[3], double maximum[3]) {
-  float low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
-  size_t n_finite = 0;
-  for (size_t k = 0; k < n; k++) {
+  float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  size_t n_finite = 0, first = 0;
+  if (!indices && (!stride || stride == sizeof(float)))
+    first = bound_columns(position, n, low, high, &n_finite);
+  for (size_t k = first; k < n; k++) {
     float p[3];
     for (int axis = 0; axis < 3; axis++)
       p[axis] = conic_column_at(position[axis], stride, indices ? indices[k] : k);
     if (!(p[0] * 0.0f == 0.0f && p[1] * 0.0f == 0.0f && p[2] * 0.0f == 0.0f))
       continue;
     for (int axis = 0; axis < 3; axis++) {
-      low[axis] = n_finite == 0 || p[axis] < low[axis] ? p[axis] : low[axis];
-      high[axis] = n_finite == 0 || p[axis] > high[axis] ? p[axis] : high[axis];
+      low[axis] = p[axis] < low[axis] ? p[axis] : low[axis];
+      high[axis] = p[axis] > high[axis] ? p[axis] : high[axis];
     }
     n_finite++;
   }
