@@ -42,6 +42,13 @@ void conic_facts_add_up(conic_facts *facts, const double up[3], conic_up_basis b
                   CONIC_NUMBER(NULL, up[2]), CONIC_END,
                   conic_fact_text(CONIC_FACT_TEXT, "up_basis", "%s", conic_up_basis_name(basis)),
                   CONIC_LINE("up", "%s, %s", text, conic_up_basis_reason(basis)));
+/* With seven digits, and as many more as both ends begin with alike, as times do. */
+conic_fact conic_facts_range(int is_first, const char *name, double low, double high) {
+  double extent = high - low, most = fmax(fabs(low), fabs(high));
+  int digits = 7;
+  for (; extent > 0.0 && most > 10.0 * extent && digits < 16; digits++)
+    extent *= 10.0;
+  return CONIC_LINE(is_first ? "values" : "", "%s: %.*g to %.*g", name, digits, low, digits, high);
 }
 
 void conic_facts_add_bounds(conic_facts *facts, const double low[3], const double high[3]) {

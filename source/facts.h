@@ -36,5 +36,8 @@ void conic_facts_add(conic_facts *facts, const conic_fact *more, size_t n);
 /* Which way is up, and why, and their line. */
 void conic_facts_add_up(conic_facts *facts, const double up[3], conic_up_basis basis);
 
+/* The line of a value's range, the first one or another. */
+conic_fact conic_facts_range(int is_first, const char *name, double low, double high);
+
 /* The object "bounds", and its line. */
 void conic_facts_add_bounds(conic_facts *facts, const double low[3], const double high[3]);

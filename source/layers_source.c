@@ -234,7 +234,7 @@ static conic_status tell_layers_values(conic_source *source, conic_facts *facts)
     CONIC_ADD_FACTS(facts, CONIC_OBJECT(NULL), conic_fact_text(CONIC_FACT_TEXT, "name", "%s", value->name),
                     conic_fact_text(CONIC_FACT_TEXT, "type", "%s", conic_layers_number_name(value->type)),
                     CONIC_NUMBER("minimum", value->low), CONIC_NUMBER("maximum", value->high), CONIC_END,
-                    CONIC_LINE(n_told == 1 ? "values" : "", "%s: %.7g to %.7g", value->name, value->low, value->high));
+                    conic_facts_range(n_told == 1, value->name, value->low, value->high));
   }
   if (n_told)
     CONIC_ADD_FACTS(facts, CONIC_END);

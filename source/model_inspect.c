@@ -18,8 +18,9 @@ typedef struct value_range {
 
 static conic_status widen_values(void *cookie, const conic_splats *batch) {
   value_range *range = cookie;
-  for (size_t i = 0; batch->scalar && i < batch->count; i++) {
-    double value = (double)batch->scalar[i];
+  const conic_point_values *values = batch->values;
+  for (size_t i = 0; values && i < batch->count; i++) {
+    double value = values->value[values->scalar][i];
     if (!(value - value == 0.0))
       continue;
     range->minimum = range->n == 0 || value < range->minimum ? value : range->minimum;
@@ -82,8 +83,7 @@ static conic_status tell_values(conic_context *context, const char *path, const 
     if (may_read_again && !range.n)
       CONIC_ADD_FACTS(facts, CONIC_LINE(i ? "" : "values", "%s: no number", field->name));
     if (range.n)
-      CONIC_ADD_FACTS(facts,
-                      CONIC_LINE(i ? "" : "values", "%s: %.7g to %.7g", field->name, range.minimum, range.maximum));
+      CONIC_ADD_FACTS(facts, conic_facts_range(i == 0, field->name, range.minimum, range.maximum));
   }
   CONIC_ADD_FACTS(facts, CONIC_END);
   return status;

@@ -14,6 +14,7 @@ typedef enum coloring_kind { BY_VALUE, BY_HEIGHT, BY_NORMAL } coloring_kind;
 typedef struct vertices {
   size_t count;
   const double *origin;
+  double scalar_origin;
   float *const *position;
   float **color, **scalar;
   const conic_splats *splats; /* null for triangles */
@@ -85,7 +86,7 @@ void conic_coloring_color(const conic_coloring *coloring, double value, float li
 static double value_at_vertex(const painting *p, const vertices *set, size_t i) {
   double height = 0.0;
   if (p->kind == BY_VALUE)
-    return *set->scalar ? (double)(*set->scalar)[i] : NAN;
+    return *set->scalar ? set->scalar_origin + (double)(*set->scalar)[i] : NAN;
   for (int axis = 0; axis < 3; axis++)
     height += p->up[axis] * (set->origin[axis] + (double)set->position[axis][i]);
   return height;
@@ -317,7 +318,11 @@ void conic_coloring_sample(const conic_coloring_options *options, const conic_sp
   painting p = {.kind = is_that_word(options->by, "height") ? BY_HEIGHT : BY_VALUE,
                 .up = {options->up[0], options->up[1], options->up[2]}};
   float *scalar = batch->scalar;
-  const vertices set = {.count = batch->count, .origin = batch->origin, .position = batch->position, .scalar = &scalar};
+  const vertices set = {.count = batch->count,
+                        .origin = batch->origin,
+                        .scalar_origin = batch->scalar_origin,
+                        .position = batch->position,
+                        .scalar = &scalar};
   if (!conic_normalize(p.up))
     p.up[1] = 1.0;
   for (size_t i = 0; i < batch->count; i++)
@@ -353,8 +358,10 @@ conic_status conic_drawing_color(conic_context *context, const conic_coloring_op
   if (status != CONIC_OK)
     return status;
   painting p = {context, BY_VALUE, {own.up[0], own.up[1], own.up[2]}, .coloring = coloring};
-  p.sets[0] = (vertices){s->count, s->origin, s->position, s->color, &s->scalar, s, {NULL, NULL, NULL}};
-  p.sets[1] = (vertices){t->n_vertices, t->origin, t->position, t->color, &t->scalar, NULL, {NULL, NULL, NULL}};
+  p.sets[0] =
+      (vertices){s->count, s->origin, s->scalar_origin, s->position, s->color, &s->scalar, s, {NULL, NULL, NULL}};
+  p.sets[1] = (vertices){t->n_vertices, t->origin, t->scalar_origin,  t->position, t->color,
+                         &t->scalar,    NULL,      {NULL, NULL, NULL}};
   if (!conic_normalize(p.up))
     p.up[1] = 1.0;
   status = choose_coloring(&p, &own, s->color[0] || t->color[0] || t->n_materials);

@@ -91,7 +91,11 @@ static void list_ticks(legend *l) {
   double step = tick_step(extent, &n_decimals);
   for (double tick = ceil(c->minimum / step) * step; tick <= c->maximum && l->n_rows < MOST_ROWS; tick += step) {
     double t = (tick - c->minimum) / extent;
-    snprintf(text, sizeof text, fabs(tick) < 1e7 ? "%.*f" : "%.*g", fabs(tick) < 1e7 ? n_decimals : 8,
+    int is_plain = fabs(tick) < 1e7 || (n_decimals > 0 && fabs(tick) < 1e12);
+    snprintf(text, sizeof text, is_plain ? "%.*f" : "%.*g",
+             is_plain                  ? n_decimals
+             : fabs(tick) > 1e7 * step ? 12
+                                       : 8,
              fabs(tick) < 1e-3 * step ? 0.0 : tick);
     add_legend_row(l, text)->at = c->is_root ? sqrt(t > 0.0 ? t : 0.0) : t;
   }

@@ -23,7 +23,7 @@ static conic_status copy_lent_splats(conic_context *context, const char *name, c
 
 /* The vertices, as splats without axes. */
 static conic_splats vertices_of(const conic_triangles *mesh) {
-  conic_splats points = {.count = mesh->n_vertices, .scalar = mesh->scalar};
+  conic_splats points = {.count = mesh->n_vertices, .scalar = mesh->scalar, .scalar_origin = mesh->scalar_origin};
   memcpy(points.origin, mesh->origin, sizeof points.origin);
   for (int axis = 0; axis < 3; axis++) {
     points.position[axis] = mesh->position[axis];

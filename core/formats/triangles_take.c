@@ -22,6 +22,7 @@ static void take_arrays(conic_model *model, conic_triangles *triangles) {
   memcpy(triangles->color, points->color, sizeof triangles->color);
   memcpy(triangles->normal, points->normal, sizeof triangles->normal);
   triangles->scalar = points->scalar;
+  triangles->scalar_origin = points->scalar_origin;
   if (!are_opaque(points)) {
     triangles->alpha = points->opacity;
     points->opacity = NULL;

@@ -173,6 +173,7 @@ static conic_status choose_scalar_field(conic_builder *builder, const char *file
                ? refuse_field(builder->context, file, options->field, builder->model)
                : CONIC_OK;
   values->scalar = column_for(values, field);
+  values->is_scalar_origin_set = strcmp(builder->model->fields[field].type, "float") == 0;
   return values->scalar >= 0 ? conic_builder_add_field(builder, CONIC_SPLATS_SCALARS) : CONIC_OK;
 }
 

@@ -59,11 +59,25 @@ static void leave_points_out(conic_splats *points, conic_point_values *values) {
   points->n_clips = n_clips;
 }
 
+/* Where the first number lies as far out as map coordinates, it becomes the origin, such as of times. */
+static void find_scalar_origin(conic_splats *points, conic_point_values *values) {
+  const double *value = values->value[values->scalar];
+  for (size_t i = 0; i < points->count && !values->is_scalar_origin_set; i++) {
+    if (!(value[i] - value[i] == 0.0))
+      continue;
+    if (fabs(value[i]) > 65536.0)
+      points->scalar_origin = value[i];
+    values->is_scalar_origin_set = 1;
+  }
+}
+
 void conic_point_values_settle(conic_splats *points) {
   conic_point_values *values = points->values;
   fill_place_columns(points, values);
+  if (values->scalar >= 0 && points->scalar)
+    find_scalar_origin(points, values);
   for (size_t i = 0; i < points->count && values->scalar >= 0 && points->scalar; i++)
-    points->scalar[i] = (float)values->value[values->scalar][i];
+    points->scalar[i] = (float)(values->value[values->scalar][i] - points->scalar_origin);
   if (values->filter)
     leave_points_out(points, values);
   values->count = points->count;

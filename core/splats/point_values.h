@@ -17,6 +17,7 @@ struct conic_point_values {
   size_t n_columns, room;
   int source[CONIC_MOST_POINT_VALUES]; /* of each column: the file's field; −1, −2, −3: the place's x, y, z */
   int scalar;                          /* the column that the points' scalars are; −1: none */
+  int is_scalar_origin_set;            /* the first of them has been seen, or they are floats */
   conic_filter *filter;                /* null: all points are wanted */
   int filtered_by[CONIC_FILTER_MOST_NAMES]; /* columns */
 };

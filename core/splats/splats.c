@@ -116,6 +116,10 @@ conic_status conic_splats_append(conic_context *context, conic_splats *splats, c
     for (size_t i = 0; shift != 0.0 && i < more->count; i++)
       joined.position[axis][splats->count + i] = (float)((double)joined.position[axis][splats->count + i] + shift);
   }
+  joined.scalar_origin = splats->scalar ? splats->scalar_origin : more->scalar_origin;
+  double shift = more->scalar_origin - joined.scalar_origin;
+  for (size_t i = 0; more->scalar && shift != 0.0 && i < more->count; i++)
+    joined.scalar[splats->count + i] = (float)((double)joined.scalar[splats->count + i] + shift);
   conic_splats_release(context, splats);
   *splats = joined;
   return CONIC_OK;
@@ -133,6 +137,7 @@ conic_status conic_splats_resize(conic_context *context, conic_splats *splats, s
     if (*to[i].floats)
       copy_or_fill(*to[i].floats, &from[i]);
   memcpy(larger.origin, splats->origin, sizeof larger.origin);
+  larger.scalar_origin = splats->scalar_origin;
   larger.count = splats->count;
   larger.n_clips = splats->n_clips;
   larger.clips = splats->clips;
@@ -158,6 +163,7 @@ conic_status conic_splats_gather(conic_context *context, const conic_splats *fro
     for (size_t i = 0; *to[i_column].floats && i < count; i++)
       (*to[i_column].floats)[i] = (*old[i_column].floats)[sources[i]];
   memcpy(gathered->origin, from->origin, sizeof gathered->origin);
+  gathered->scalar_origin = from->scalar_origin;
   return CONIC_OK;
 }
 

@@ -113,9 +113,12 @@ static void join_vertices(const conic_triangles *a, const conic_triangles *b, co
       joined->color[axis][i] = set->color[0] ? set->color[axis][i < a->n_vertices ? i : i - a->n_vertices] : 1.0f;
     }
   }
+  joined->scalar_origin = a->scalar ? a->scalar_origin : b->scalar_origin;
   for (size_t i = 0; joined->scalar && i < joined->n_vertices; i++) {
     const conic_triangles *set = i < a->n_vertices ? a : b;
-    joined->scalar[i] = set->scalar ? set->scalar[i < a->n_vertices ? i : i - a->n_vertices] : NAN;
+    float value = set->scalar ? set->scalar[i < a->n_vertices ? i : i - a->n_vertices] : NAN;
+    double shift = set->scalar_origin - joined->scalar_origin;
+    joined->scalar[i] = shift != 0.0 ? (float)((double)value + shift) : value;
   }
   for (size_t i = 0; joined->alpha && i < joined->n_vertices; i++) {
     const conic_triangles *set = i < a->n_vertices ? a : b;

@@ -77,7 +77,8 @@ typedef struct conic_splats {
   float *dot;
 
   /* One more value a splat, such as a scan's intensity, from which colours can be made (conic/coloring.h); optional. It
-   * does not change the picture. NaN where a splat has none. */
+   * does not change the picture. NaN where a splat has none. It is measured from scalar_origin, as positions are from
+   * theirs. */
   float *scalar;
 
   /* From each point towards the scanner that saw it, of any length; optional. It decides the sign of a normal that has
@@ -87,7 +88,8 @@ typedef struct conic_splats {
   /* The values that a file's points have by name, where they were asked for (conic_read_options.keep); else null. The
    * library owns them. Functions that make one set from another leave them out. */
   struct conic_point_values *values;
-  uint64_t reserved[3];
+  double scalar_origin;
+  uint64_t reserved[2];
 } conic_splats;
 
 /* The optional arrays of a set, as bits. */

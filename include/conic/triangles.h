@@ -76,7 +76,8 @@ typedef struct conic_triangles {
   conic_triangles_strides strides;
   float *scalar; /* [n_vertices]: as in conic_splats; optional */
   float *alpha;  /* [n_vertices]: factor of the material's alpha, 0 to 1; side by side; optional (1) */
-  uint64_t reserved[5];
+  double scalar_origin;
+  uint64_t reserved[4];
 } conic_triangles;
 
 /* The optional arrays of a set, as bits. */

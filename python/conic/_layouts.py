@@ -37,7 +37,8 @@ class Splats(ctypes.Structure):
         ("scalar", Column),
         ("sight", Triple),
         ("values", c_uint64),
-        ("reserved", c_uint64 * 3),
+        ("scalar_origin", c_double),
+        ("reserved", c_uint64 * 2),
     ]
 
 
@@ -68,7 +69,8 @@ class Triangles(ctypes.Structure):
         ("strides", TrianglesStrides),
         ("scalar", Column),
         ("alpha", Column),
-        ("reserved", c_uint64 * 5),
+        ("scalar_origin", c_double),
+        ("reserved", c_uint64 * 4),
     ]
 
 

@@ -81,7 +81,7 @@ static void test_broken_splats(fixture *f) {
   conic_splats one_axis = f->splats, lines = f->splats, later = f->splats, odd = f->splats;
   memset(one_axis.tangent_v, 0, sizeof one_axis.tangent_v);
   lines.n_clips = 1;
-  later.reserved[2] = 1;
+  later.reserved[1] = 1;
   odd.strides.color = 6;
   conic_splats *all[] = {&one_axis, &lines, &later, &odd};
   for (int i = 0; i < 4; i++) {
