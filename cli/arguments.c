@@ -122,6 +122,8 @@ int cli_parse_length(const char *text, void *length) {
   return end[parsed->is_in_spacings] == '\0';
 }
 
+const char *const cli_color_meanings[] = {"file", "display", "linear", NULL};
+
 int cli_parse_columns(const char *text, void *columns) {
   conic_text_columns parsed;
   *(const char **)columns = text;

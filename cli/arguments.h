@@ -108,8 +108,21 @@ int cli_parse_length(const char *text, void *length);
           .on = CLI_FACT(TEXT)                                                                                         \
         }                                                                                                              \
   }
-/* Both, for commands that read points and meshes of any kind. */
-#define CLI_READING(session, columns) CLI_COLUMNS(columns), CLI_OUTSIDE(session)
+/* What colours are: the option --colors, into an int of conic_color_meaning. */
+#define CLI_COLORS(to)                                                                                                 \
+  {                                                                                                                    \
+    "colors", CLI_CHOICE, to, "WHAT",                                                                                  \
+        "what colours mean that are fractions of 1: display values, as other programs write them, or linear ones, as " \
+        "conic's .ply has them: file, display, linear [file]",                                                         \
+        .choices = cli_color_meanings, .acts = {                                                                       \
+          .on = CLI_FACT(FRACTIONS)                                                                                    \
+        }                                                                                                              \
+  }
+extern const char *const cli_color_meanings[];
+
+/* All of them, for commands that read points and meshes of any kind into a cli_build. */
+#define CLI_READING(session, build)                                                                                    \
+  CLI_COLUMNS(&(build)->columns), CLI_COLORS(&(build)->colors_are), CLI_OUTSIDE(session)
 int cli_parse_columns(const char *text, void *columns);
 
 /* Which points are wanted: the option --where, into a const char *. */

@@ -20,6 +20,7 @@ static const struct {
     [CLI_FACT_EDGES] = {"edges", "triangles whose file has no normals"},
     [CLI_FACT_RAW] = {"raw", "points whose sizes are not in their file"},
     [CLI_FACT_TEXT] = {"text", "files of text"},
+    [CLI_FACT_FRACTIONS] = {"fractions", "colours that are fractions of 1, as floats in a .ply"},
     [CLI_FACT_ALPHA] = {"alpha", "splats and materials that let light through"},
     [CLI_FACT_VALUED] = {"values", "colours that are made of values, as by --color-by"},
     [CLI_FACT_MEASURED] = {"measured", "points that have such values"},

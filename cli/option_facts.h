@@ -9,12 +9,13 @@ enum cli_fact {
   CLI_FACT_TRIANGLES,
   CLI_FACT_FACES, /* the file has some, whatever is made of them */
   CLI_FACT_TEXTURED,
-  CLI_FACT_EDGES,    /* triangles whose file has no normals */
-  CLI_FACT_RAW,      /* points whose sizes are estimated */
-  CLI_FACT_TEXT,     /* a file of text */
-  CLI_FACT_ALPHA,    /* surfaces that let light through */
-  CLI_FACT_VALUED,   /* colours that are made of values */
-  CLI_FACT_MEASURED, /* points with values of their own */
+  CLI_FACT_EDGES,     /* triangles whose file has no normals */
+  CLI_FACT_RAW,       /* points whose sizes are estimated */
+  CLI_FACT_TEXT,      /* a file of text */
+  CLI_FACT_FRACTIONS, /* colours whose meaning --colors says */
+  CLI_FACT_ALPHA,     /* surfaces that let light through */
+  CLI_FACT_VALUED,    /* colours that are made of values */
+  CLI_FACT_MEASURED,  /* points with values of their own */
   CLI_FACT_HYBRID,
   CLI_FACT_LEVELS,  /* a cloud in levels */
   CLI_FACT_NODES,   /* an octree */
@@ -52,12 +53,11 @@ enum cli_fact {
   CLI_FACT_OPENCL,
 
   /* The rest is only looked at for what cannot be together. */
-  CLI_FACT_ASKING, /* the command asks about a picture, and makes none */
-  CLI_FACT_EXACT,  /* Gaussians by --profile exact */
-  CLI_FACT_PREFILTERED,
+  CLI_FACT_ASKING,    /* the command asks about a picture, and makes none */
+  CLI_FACT_EXACT,     /* Gaussians by --profile exact */
   CLI_FACT_PROJECTED, /* --projection, but for perspective; of these */
   CLI_FACT_CUBE,
-  CLI_FACT_CURVED, /* and fisheyes and panoramas */
+  CLI_FACT_CURVED, /* and fisheyes and panoramas with --prefilter */
   CLI_FACT_DEEP,
   CLI_FACT_MATTES,
   CLI_FACT_TRANSPARENT,

@@ -31,6 +31,7 @@ LISTED(light_frame_word, "world", "camera", "head")
 LISTED(lamp_word, "sphere", "disc", "rectangle")
 LISTED(transparency_word, "none", "layers", "chance")
 LISTED(as_word, "points", "mesh", "hybrid", "patches", "auto")
+LISTED(colors_word, "file", "display", "linear")
 LISTED(surface_word, "mls", "apss")
 LISTED(surface_plane_word, "full", "fast")
 LISTED(surface_weight_word, "gauss", "compact", "flat")
@@ -312,7 +313,8 @@ static const conic_shot_row reading_list[] = {
     {CONIC_ROW_HAS, AT(gaussians), NULL, "Gaussian scenes are composited, and are no splats like others"},
     {CONIC_ROW_TEXT, AT(where), NULL, "which points are wanted"},
     {CONIC_ROW_TRUTH, AT(keeps_alpha), NULL, "vertices keep their alpha"},
-    {CONIC_ROW_LEFT_OUT, AT(cache), .meaning = "what is kept is what would be built"}};
+    {CONIC_ROW_LEFT_OUT, AT(cache), .meaning = "what is kept is what would be built"},
+    {CONIC_ROW_WORD, AT(colors_are), NULL, "what colours mean that are fractions of 1", colors_word}};
 TABLE(reading, set_reading, NULL)
 #undef S
 

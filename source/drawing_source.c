@@ -3,6 +3,7 @@
 #include "core/base/context_struct.h"
 #include "core/base/loan_find.h"
 #include "core/estimate/estimate.h"
+#include "core/formats/model_read.h"
 #include "core/splats/columns.h"
 #include "core/splats/degrees.h"
 #include "core/splats/near.h"
@@ -146,12 +147,14 @@ static conic_status read_model(drawing_source *d, const char *path, const conic_
   conic_coloring_read(options->coloring, &reading);
   reading.where = options->where;
   reading.keeps_alpha = options->keeps_alpha;
+  reading.colors_are = options->colors_are;
   conic_status status = conic_gaussians_read_model(context, path, &reading, &model);
   if (status != CONIC_OK)
     return status;
   double start = conic_seconds_now();
-  d->base.traits |=
-      (model.n_triangles ? CONIC_TRAIT_FACES : 0) | (model.kind == CONIC_MODEL_XYZ ? CONIC_TRAIT_TEXT : 0);
+  d->base.traits |= (model.n_triangles ? CONIC_TRAIT_FACES : 0) |
+                    (model.kind == CONIC_MODEL_XYZ ? CONIC_TRAIT_TEXT : 0) |
+                    (conic_model_has_fractions(&model) ? CONIC_TRAIT_FRACTIONS : 0);
   memcpy(up, model.up, sizeof model.up);
   if (conic_splats_bounds(&model.points, low, high) == 0)
     status = conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot be drawn: %s", path,

@@ -42,6 +42,8 @@ void conic_facts_add_up(conic_facts *facts, const double up[3], conic_up_basis b
                   CONIC_NUMBER(NULL, up[2]), CONIC_END,
                   conic_fact_text(CONIC_FACT_TEXT, "up_basis", "%s", conic_up_basis_name(basis)),
                   CONIC_LINE("up", "%s, %s", text, conic_up_basis_reason(basis)));
+}
+
 /* With seven digits, and as many more as both ends begin with alike, as times do. */
 conic_fact conic_facts_range(int is_first, const char *name, double low, double high) {
   double extent = high - low, most = fmax(fabs(low), fabs(high));

@@ -36,8 +36,10 @@ static conic_status build_hybrid(hybrid_source *h, const char *path, const conic
   conic_hybrid_input input;
   conic_hybrid_options building;
   const conic_hybrid_reading reading = {options->texture_path, options->coloring, options->is_smooth,
-                                        options->crease_deg,   options->cutoff,   options->n_neighbours};
+                                        options->crease_deg,   options->cutoff,   options->n_neighbours,
+                                        options->colors_are};
   conic_status status = conic_hybrid_input_read(h->base.context, path, &reading, &input);
+  h->base.no_traits |= input.has_fractions ? 0u : (unsigned)CONIC_TRAIT_FRACTIONS;
   if (status == CONIC_OK)
     status = conic_source_color(&h->base, options, input.is_points ? &input.splats : NULL,
                                 input.is_points ? NULL : &input.mesh);

@@ -97,10 +97,12 @@ conic_status conic_hybrid_input_read(conic_context *context, const char *path, c
   conic_read_options_init(&options);
   options.cutoff = reading->cutoff;
   options.keeps_faces = 1;
+  options.colors_are = reading->colors_are;
   conic_coloring_read(reading->coloring, &options);
   conic_status status = conic_gaussians_read_model(context, path, &options, &model);
   if (status != CONIC_OK)
     return status;
+  input->has_fractions = conic_model_has_fractions(&model);
   status = model.n_triangles ? take_hybrid_mesh(context, path, reading, &model, input)
                              : take_hybrid_points(context, path, reading, &model, input);
   conic_model_release(context, &model);

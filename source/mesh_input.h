@@ -16,7 +16,8 @@ conic_status conic_mesh_lay_texture(conic_context *context, const char *texture_
 /* --- the input of hybrid models: a mesh, or splats --- */
 
 typedef struct conic_hybrid_input {
-  int is_points; /* the input is splats; else the mesh */
+  int is_points;     /* the input is splats; else the mesh */
+  int has_fractions; /* colours whose meaning `colors_are` says */
   conic_triangles mesh;
   conic_splats splats;
   double up[3]; /* the direction that the file states for points; zero: none */
@@ -29,7 +30,7 @@ typedef struct conic_hybrid_reading {
   int is_smooth;
   double crease_deg;
   float cutoff;
-  int n_neighbours;
+  int n_neighbours, colors_are;
 } conic_hybrid_reading;
 
 /* Reads a mesh and gives it normals; or, from a file without faces, points, which get sizes where they have none. On

@@ -36,7 +36,8 @@ enum { NEEDED = CONIC_SPLATS_TANGENTS, HANDED = CONIC_SPLATS_TANGENTS | CONIC_SP
 /* Whether the splats depend on nothing but their own axes. */
 static int wants_splats(const char *const *paths, size_t n_paths, const conic_source_options *options) {
   int is_plain = (options->as == CONIC_AS_POINTS || options->as == CONIC_AS_AUTO) && !options->where &&
-                 !options->texture_path && !options->columns && !conic_coloring_is_asked(options);
+                 !options->texture_path && !options->columns && !options->colors_are &&
+                 !conic_coloring_is_asked(options);
   return is_plain && conic_source_kind_find(paths, n_paths, options) == &conic_source_kind_drawing;
 }
 
@@ -61,8 +62,8 @@ static conic_status look_at_files(conic_context *context, const char *const *pat
     conic_model_shape shape = {.can_part = 0};
     if (!conic_source_kind_of_file(paths[i]) && !conic_gaussians_is_file(context, paths[i]))
       status = conic_model_look(context, paths[i], &reading, &shape);
-    look->can_share = shape.can_part && shape.n_points > 0 && (shape.fields & NEEDED) == NEEDED &&
-                      !(shape.fields & ~(unsigned)HANDED);
+    look->can_share = shape.can_part && !shape.needs_survey && shape.n_points > 0 &&
+                      (shape.fields & NEEDED) == NEEDED && !(shape.fields & ~(unsigned)HANDED);
     look->fields |= shape.fields;
     look->n_splats += n_points[i] = shape.n_points;
   }
@@ -176,7 +177,8 @@ static conic_status measure_shared(shared_source *s) {
   scale->near_z = conic_near_of_box(scale->minimum, scale->maximum);
   scale->n_splats = shares->count;
   scale->has_colors = s->part.color[0] != NULL;
-  s->base.no_traits = CONIC_TRAIT_FACES | CONIC_TRAIT_EDGES | CONIC_TRAIT_RAW | CONIC_TRAIT_TEXT;
+  s->base.no_traits =
+      CONIC_TRAIT_FACES | CONIC_TRAIT_EDGES | CONIC_TRAIT_RAW | CONIC_TRAIT_TEXT | CONIC_TRAIT_FRACTIONS;
   return conic_shares_length(s->base.context, shares, &s->part, &scale->splat_length);
 }
 

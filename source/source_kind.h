@@ -8,11 +8,12 @@
 
 /* Facts about a source's origin that its scale does not hold, as bits. */
 typedef enum conic_source_trait {
-  CONIC_TRAIT_FACES = 1, /* a file has faces, whatever they became */
-  CONIC_TRAIT_EDGES = 2, /* triangles whose file has no normals */
-  CONIC_TRAIT_RAW = 4,   /* points whose sizes were estimated */
-  CONIC_TRAIT_TEXT = 8,  /* a file of text */
-  CONIC_TRAIT_ALPHA = 16 /* something lets light through */
+  CONIC_TRAIT_FACES = 1,     /* a file has faces, whatever they became */
+  CONIC_TRAIT_EDGES = 2,     /* triangles whose file has no normals */
+  CONIC_TRAIT_RAW = 4,       /* points whose sizes were estimated */
+  CONIC_TRAIT_TEXT = 8,      /* a file of text */
+  CONIC_TRAIT_ALPHA = 16,    /* something lets light through */
+  CONIC_TRAIT_FRACTIONS = 32 /* colours whose meaning an option says */
 } conic_source_trait;
 
 typedef enum conic_source_company {

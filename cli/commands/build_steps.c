@@ -3,6 +3,7 @@
 #include "cli/outputs.h"
 #include "cli/points/points_input.h"
 #include "core/base/team_runs.h"
+#include "core/formats/model_read.h"
 #include "source/reach.h"
 
 int cli_build_check(const cli_build *build, const char *const *inputs, int n_inputs, const char *ending) {
@@ -51,6 +52,13 @@ int cli_build_arguments(cli_build *build, const cli_option *options, int n_optio
   return exit_code;
 }
 
+void cli_build_reading(const cli_build *build, conic_read_options *options) {
+  conic_read_options_init(options);
+  options->columns = build->columns;
+  options->where = build->where;
+  options->colors_are = build->colors_are;
+}
+
 conic_status cli_build_know(cli_build *build, cli_facts possible) {
   build->effects.possible = possible;
   int answer = cli_effects_check_given(build->session, &build->effects, build->input, NULL);
@@ -60,7 +68,8 @@ conic_status cli_build_know(cli_build *build, cli_facts possible) {
 cli_facts cli_build_facts(const conic_model *model) {
   const int is_raw = !model->points.tangent_u[0] && !model->n_triangles;
   return CLI_FACT(SPLATS) | CLI_FACT(VALUED) | (is_raw ? CLI_FACT(RAW) : 0) |
-         (model->n_triangles ? CLI_FACT(FACES) : 0) | (model->kind == CONIC_MODEL_XYZ ? CLI_FACT(TEXT) : 0);
+         (model->n_triangles ? CLI_FACT(FACES) : 0) | (model->kind == CONIC_MODEL_XYZ ? CLI_FACT(TEXT) : 0) |
+         (conic_model_has_fractions(model) ? CLI_FACT(FRACTIONS) : 0);
 }
 
 cli_facts cli_build_facts_of_file(const cli_build *build, const char *path) {

@@ -11,6 +11,7 @@ typedef struct cli_build {
   const char *input, *output;
   const char *columns;     /* of a text input; or null */
   const char *where;       /* which points of it are read; null: all */
+  int colors_are;          /* what its colours mean, as in conic_read_options */
   int is_in_place;         /* the output replaces the input */
   cli_effects_job effects; /* of the options that were given */
   cli_stage stages[6];     /* in the order of the report; the names end their number */
@@ -35,6 +36,9 @@ int cli_build_parse(cli_build *build, const cli_option *options, int n_options, 
 /* cli_parse, which notes the options for cli_build_know. */
 int cli_build_arguments(cli_build *build, const cli_option *options, int n_options, int argc, char **argv,
                         const char **positional, int *n_positional);
+
+/* The defaults, and what the arguments say of the input. */
+void cli_build_reading(const cli_build *build, conic_read_options *options);
 
 /* Refuses, or warns of, options that act on none of the facts of what is read. Errors: ARGUMENT. */
 conic_status cli_build_know(cli_build *build, cli_facts possible);

@@ -25,9 +25,8 @@ enum { READ, ESTIMATE, WORK, WRITE };
 static conic_status read_solids(csg_job *job) {
   conic_context *context = job->base.session->context;
   conic_read_options options;
-  conic_read_options_init(&options);
+  cli_build_reading(&job->base, &options);
   options.cutoff = job->estimate.cutoff;
-  options.columns = job->base.columns;
   conic_status status = CONIC_OK;
   for (int i = 0; i < 2 && status == CONIC_OK; i++) {
     job->base.input = job->inputs[i];
@@ -133,7 +132,7 @@ static int run_csg(cli_session *session, int argc, char **argv) {
        "neighbours that a raw point's size is estimated from, 6 to 64 [20]", 6, 64,
        .acts = {.on = CLI_FACT(RAW), .is_warned = 1}},
       {"cutoff", CLI_NUMBER, &job.cutoff, "F", "the --cutoff of the pictures to come [1.5]", 0.25, 5},
-      CLI_READING(session, &job.base.columns),
+      CLI_READING(session, &job.base),
   };
   int exit_code =
       cli_build_arguments(&job.base, options, sizeof options / sizeof *options, argc, argv, positional, &n_positional);

@@ -85,10 +85,8 @@ static conic_status stream_part(cut_job *job) {
     conic_layers_close(layers);
     return status;
   }
-  conic_read_options_init(&options);
+  cli_build_reading(&job->base, &options);
   options.cutoff = (float)job->cutoff;
-  options.columns = job->base.columns;
-  options.where = job->base.where;
   options.keep = kept_names(job);
   return conic_model_stream(context, job->base.input, &options, take_cut_batch, job);
 }
@@ -238,7 +236,7 @@ static int run_cut(cli_session *session, int argc, char **argv) {
        1e9, .acts.is_work = 1},
       {"cutoff", CLI_NUMBER, &job.cutoff, "F", "the --cutoff of the pictures to come [1.5]", 0.25, 5,
        .acts.with = "o=.lpc"},
-      CLI_READING(session, &job.base.columns),
+      CLI_READING(session, &job.base),
   };
   int exit_code =
       cli_build_arguments(&job.base, options, sizeof options / sizeof *options, argc, argv, positional, &n_positional);

@@ -26,12 +26,14 @@ enum { READ, CLUSTER, SAMPLE, SIMPLIFY, WORK, WRITE };
 static conic_status build_whole(hybrid_job *job) {
   conic_context *context = job->base.session->context;
   conic_hybrid_input input;
-  const conic_hybrid_reading reading = {job->texture,    &job->coloring.options, job->is_smooth,
-                                        job->crease_deg, job->options.cutoff,    0};
+  const conic_hybrid_reading reading = {job->texture,        &job->coloring.options, job->is_smooth,
+                                        job->crease_deg,     job->options.cutoff,    0,
+                                        job->base.colors_are};
   double start = cli_seconds();
   conic_status status = conic_hybrid_input_read(context, job->base.input, &reading, &input);
   if (status == CONIC_OK)
     status = cli_build_know(&job->base, CLI_SURFACES | CLI_FACT(VALUED) | (input.is_points ? 0 : CLI_FACT(FACES)) |
+                                            (input.has_fractions ? CLI_FACT(FRACTIONS) : 0) |
                                             (context->texture_bytes ? CLI_FACT(TEXTURED) : 0));
   if (status == CONIC_OK)
     status =
@@ -46,7 +48,7 @@ static conic_status build_whole(hybrid_job *job) {
 
 static conic_status build_within(hybrid_job *job) {
   conic_hybrid_streaming streaming;
-  conic_status status = cli_build_know(&job->base, CLI_SOURCE_FACTS & ~CLI_FACT(TEXTURED));
+  conic_status status = cli_build_know(&job->base, CLI_SOURCE_FACTS & ~(CLI_FACT(TEXTURED) | CLI_FACT(FRACTIONS)));
   conic_hybrid_streaming_init(&streaming);
   streaming.memory_bytes = (uint64_t)job->memory_mib << 20;
   streaming.is_smooth = job->is_smooth;
@@ -176,6 +178,7 @@ static int run_hybrid(cli_session *session, int argc, char **argv) {
        "blue (blue noise, ellipses) or box (three grids, circles: for comparison) [blue]", .choices = sampling_words},
       {"texture", CLI_TEXT, &job.texture, "FILE", "the picture on the mesh's surface [as its materials say]"},
       CLI_TEXTURE_BOUND(session),
+      CLI_COLORS(&job.base.colors_are),
       CLI_OUTSIDE(session),
       {"smooth", CLI_FLAG, &job.is_smooth, NULL,
        "triangles look smooth everywhere: each vertex gets the mean normal of its faces", .acts.on = CLI_FACT(FACES)},

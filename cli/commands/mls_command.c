@@ -60,8 +60,7 @@ static conic_status read_points(mls_job *job) {
   conic_context *context = job->base.session->context;
   double start = cli_seconds();
   conic_read_options options;
-  conic_read_options_init(&options);
-  options.columns = job->base.columns;
+  cli_build_reading(&job->base, &options);
   conic_status status = conic_gaussians_read_model(context, job->base.input, &options, &job->model);
   start = cli_build_end_stage(&job->base.stages[READ], start);
   if (status != CONIC_OK)
@@ -145,8 +144,7 @@ static int is_by_cells(const mls_job *job) {
 static conic_status feed_points(void *cookie, conic_batch_receiver *receive, void *to) {
   mls_job *job = cookie;
   conic_read_options options;
-  conic_read_options_init(&options);
-  options.columns = job->base.columns;
+  cli_build_reading(&job->base, &options);
   return job->has_memory ? conic_model_stream(job->base.session->context, job->base.input, &options, receive, to)
                          : receive(to, &job->model.points);
 }
@@ -416,7 +414,7 @@ static int run_mls(cli_session *session, int argc, char **argv) {
        .acts = {.with = "@project", .is_work = 1}},
       {"isa", CLI_CHOICE, &job.isa, "ISA", "auto, scalar, sse2, avx2, avx512, neon; changes no bit [auto]",
        .choices = isa_names, .acts.is_work = 1},
-      CLI_READING(session, &job.base.columns),
+      CLI_READING(session, &job.base),
   };
   int exit_code =
       cli_build_arguments(&job.base, options, sizeof options / sizeof *options, argc, argv, positional, &n_positional);

@@ -24,12 +24,10 @@ static conic_status build_from_model(octree_job *job) {
   cli_stage *stages = job->base.stages;
   conic_read_options read_options;
   conic_model model;
-  conic_read_options_init(&read_options);
+  cli_build_reading(&job->base, &read_options);
   read_options.cutoff = job->options.cutoff;
   cli_coloring_read(&job->coloring, &read_options);
   double start = cli_seconds();
-  read_options.columns = job->base.columns;
-  read_options.where = job->base.where;
   conic_status status = conic_gaussians_read_model(context, job->base.input, &read_options, &model);
   start = cli_build_end_stage(&stages[READ], start);
   if (status != CONIC_OK)
@@ -112,7 +110,7 @@ static int run_octree(cli_session *session, int argc, char **argv) {
       {"k", CLI_INT, &job.estimate.n_neighbours, "K",
        "neighbours that a raw point's size is estimated from, 6 to 64 [20]", 6, 64,
        .acts = {.on = CLI_FACT(RAW), .is_warned = 1}},
-      CLI_READING(session, &job.base.columns),
+      CLI_READING(session, &job.base),
       CLI_WHERE(&job.base.where),
       CLI_BUILD_COLOR_OPTIONS(&job.coloring, CLI_UP_OF_COLORS),
   };

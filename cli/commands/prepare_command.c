@@ -72,11 +72,9 @@ static conic_status thin_model(prepare_job *job) {
 
 static conic_status read_model(prepare_job *job) {
   conic_read_options options;
-  conic_read_options_init(&options);
+  cli_build_reading(&job->base, &options);
   options.cutoff = job->estimate.cutoff;
   cli_coloring_read(&job->coloring, &options);
-  options.columns = job->base.columns;
-  options.where = job->base.where;
   conic_status status = cli_points_read(job->base.session->context, job->base.input, &options, &job->model);
   job->n_in = status == CONIC_OK ? job->model.points.count : 0;
   if (status == CONIC_OK)
@@ -182,7 +180,7 @@ static int run_prepare(cli_session *session, int argc, char **argv) {
       {"seed", CLI_COUNT, &job.seed, "S",
        "which points --count chooses; those of a smaller count are among those of a larger one [0]",
        .acts.with = "count"},
-      CLI_READING(session, &job.base.columns),
+      CLI_READING(session, &job.base),
       CLI_WHERE(&job.base.where),
       {"plain", CLI_FLAG, &job.is_plain, NULL,
        "every point becomes an ellipse; else those that lie on no surface become round dots", .acts.on = CLI_FACT(RAW)},

@@ -204,7 +204,7 @@ static int run_layer(cli_session *session, int argc, char **argv) {
        "add to the OUT.lpc that there is; its samples stay where they are"},
       CLI_LAYER_KEEPING(job),
       CLI_WHERE(&job.base.where),
-      CLI_READING(session, &job.base.columns),
+      CLI_READING(session, &job.base),
       CLI_BUILD_COLOR_OPTIONS(&job.coloring, NULL),
   };
   int exit_code =

@@ -51,6 +51,7 @@ static void add_reading(const cli_layer_job *job, conic_sha256 *sum) {
   file.reading.finds_dots = job->estimate.finds_dots;
   file.reading.cutoff = (float)job->cutoff;
   file.reading.columns = job->base.columns;
+  file.reading.colors_are = job->base.colors_are;
   file.reading.where = job->base.where;
   file.reading.coloring = job->coloring.options.by ? &job->coloring.options : NULL;
   conic_key_add_fields(sum, &file, "reading.");

@@ -111,10 +111,10 @@ static conic_status read_raw(cli_layer_job *job, const conic_read_options *optio
 }
 
 void cli_layer_reading(const cli_layer_job *job, conic_read_options *options) {
-  conic_read_options_init(options);
+  cli_build_reading(&job->base, options);
+  options->where = NULL;
   options->cutoff = job->options.cutoff;
   cli_coloring_read(&job->coloring, options);
-  options->columns = job->base.columns;
 }
 
 static conic_status read_layer_piece(cli_layer_job *job, const cli_points_piece *piece,

@@ -301,6 +301,7 @@ static void begin_reading(const cli_shot_again *again, cli_render_job *job) {
   const conic_source_options *reading = &again->file->reading;
   job->opening.n_neighbours = reading->n_neighbours;
   job->opening.columns = reading->columns;
+  job->opening.colors_are = reading->colors_are;
   job->opening.where = reading->where;
   job->opening.texture_path = again->texture;
   if (!reading->coloring)

@@ -27,8 +27,7 @@ static const struct {
      "--projection is of pictures by conic render, and of Gaussian scenes by --profile exact"},
     {F(PROJECTED) | F(ASKING), 0, F(EXACT),
      "--projection is of pictures by conic render, and of Gaussian scenes by --profile exact"},
-    {F(CURVED) | F(COMPOSITED) | F(PREFILTERED), 0, 0,
-     "--prefilter is of perspective and orthographic pictures of Gaussian scenes"},
+    {F(CURVED) | F(COMPOSITED), 0, 0, "--prefilter is of perspective and orthographic pictures of Gaussian scenes"},
     {F(COMPOSITED), F(DEEP) | F(MATTES) | F(EXPOSED), 0,
      "--deep, mattes and --exposure auto are of splats; give --profile surface, too"},
     {F(LEVELS) | F(ASKING), CLI_CHOSEN, 0,
@@ -89,7 +88,8 @@ static int is_gaussian(const cli_session *session, const cli_render_job *job) {
 static void guess_source(const cli_session *session, cli_render_job *job) {
   cli_effects_job *own = &job->effects;
   const unsigned can = job->abilities;
-  const cli_facts read = CLI_SURFACES | F(FACES) | F(TEXTURED) | F(EDGES) | F(RAW) | F(TEXT) | F(ALPHA) | F(VALUED);
+  const cli_facts read =
+      CLI_SURFACES | F(FACES) | F(TEXTURED) | F(EDGES) | F(RAW) | F(TEXT) | F(ALPHA) | F(VALUED) | F(FRACTIONS);
   int is_hybrid = (can & CONIC_SOURCE_CLUSTERS) != 0, is_mesh = job->opening.as == CONIC_AS_HYBRID;
   own->certain = when(can & CONIC_SOURCE_COMPOSITES, F(COMPOSITED)) | when(is_hybrid, F(HYBRID)) |
                  when(can & CONIC_SOURCE_STREAMS, F(LEVELS)) | when(can == CONIC_SOURCE_CHOOSES, F(NODES)) |
@@ -102,8 +102,9 @@ static void guess_source(const cli_session *session, cli_render_job *job) {
   if (own->certain & F(COMPOSITED))
     return;
   if (is_hybrid)
-    own->possible |= CLI_SURFACES | F(TEXTURED) |
-                     when(is_mesh && !conic_source_kind_of_file(job->inputs[0]), F(FACES) | F(EDGES) | F(VALUED));
+    own->possible |=
+        CLI_SURFACES | F(TEXTURED) |
+        when(is_mesh && !conic_source_kind_of_file(job->inputs[0]), F(FACES) | F(EDGES) | F(VALUED) | F(FRACTIONS));
   else if (own->certain & F(LEVELS))
     own->possible |= F(SPLATS) | F(ALPHA) | F(VALUED);
   else if (own->certain & F(NODES))
@@ -133,8 +134,9 @@ static void know_source(cli_render_job *job) {
   const conic_source_scale *scale = conic_source_measure(job->source);
   const conic_coloring *coloring = conic_source_coloring(job->source);
   const unsigned can = scale->abilities;
-  const cli_facts traits[] = {F(FACES), F(EDGES), F(RAW), F(TEXT), F(ALPHA)}; /* as conic_source_trait has its bits */
-  for (int i = 0; i < 5; i++)
+  const cli_facts traits[] = {F(FACES), F(EDGES), F(RAW),
+                              F(TEXT),  F(ALPHA), F(FRACTIONS)}; /* as conic_source_trait has its bits */
+  for (int i = 0; i < 6; i++)
     own->possible &= ~when(job->source->no_traits >> i & 1, traits[i]);
   if (job->is_transparent && own->possible & F(NODES) && !has_faint_points(job))
     own->possible &= ~F(ALPHA);
@@ -187,7 +189,9 @@ static cli_facts ask_of_camera(const cli_render_job *job) {
          when(sums->width.value > 0.0, F(LENS)) |
          when(job->is_turntable || job->camera_path || sums->motion_path, F(WAY)) |
          when(kind != CONIC_CAMERA_PERSPECTIVE, F(PROJECTED)) | when(kind == CONIC_CAMERA_CUBE, F(CUBE)) |
-         when(kind == CONIC_CAMERA_FISHEYE || kind == CONIC_CAMERA_EQUIRECTANGULAR, F(CURVED));
+         when((kind == CONIC_CAMERA_FISHEYE || kind == CONIC_CAMERA_EQUIRECTANGULAR) &&
+                  job->shot.gaussians.prefilter > 0.0,
+              F(CURVED));
 }
 
 /* Whether a quality does. */
@@ -214,12 +218,12 @@ static cli_facts ask_of_drawing(const cli_render_job *job, const cli_scene_words
          when(chooses_samples(job, words) || is_rough, F(UNSETTLED)) |
          when(profile == CONIC_PROFILE_INRIA_2023 || profile == CONIC_PROFILE_2DGS_2024, F(OWN_CENTER)) |
          when(strcmp(job->device.name, "cpu") != 0, F(OPENCL)) | when(!job->is_for_looking, F(ASKING)) |
-         when(job->shot.gaussians.prefilter > 0.0, F(PREFILTERED)) | when(job->deep_path != NULL, F(DEEP)) |
-         when(job->has_mattes, F(MATTES)) | when(job->is_transparent, F(TRANSPARENT)) |
-         when(job->shot.view.samples > 1, F(SAMPLED)) | when(job->progressive_path != NULL, F(PROGRESSIVE)) |
-         when(job->deadline > 0.0, F(DEADLINE)) | when(job->repeat > 1, F(REPEATED)) |
-         when(job->is_exposure_automatic, F(EXPOSED)) | when(job->shot.has_backdrop, F(BACKDROP)) |
-         when(job->lamps.n_lamps || cli_lamps_are_soft(job), F(LAMPS)) | when(is_masked, F(MASKED)) |
+         when(job->deep_path != NULL, F(DEEP)) | when(job->has_mattes, F(MATTES)) |
+         when(job->is_transparent, F(TRANSPARENT)) | when(job->shot.view.samples > 1, F(SAMPLED)) |
+         when(job->progressive_path != NULL, F(PROGRESSIVE)) | when(job->deadline > 0.0, F(DEADLINE)) |
+         when(job->repeat > 1, F(REPEATED)) | when(job->is_exposure_automatic, F(EXPOSED)) |
+         when(job->shot.has_backdrop, F(BACKDROP)) | when(job->lamps.n_lamps || cli_lamps_are_soft(job), F(LAMPS)) |
+         when(is_masked, F(MASKED)) |
          when(job->overdraw_path || job->clusters_path || job->boxes_path || job->legend_path || job->has_legend,
               F(SHOWN));
 }

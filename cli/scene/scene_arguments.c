@@ -229,7 +229,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .acts = {.on = CLI_FACT(HYBRID)}},
       {"method", CLI_CHOICE, &raw.method, "NAME",
        "how a splat becomes pixels, from rough to exact: point, disc, affine, conic, ray; auto: conic where that is "
-       "exact enough, else ray or, of large splats, laplace; patch: as part of a smooth surface through the points, with patch:D by polynomials of "
+       "exact enough, else ray or, of large splats, laplace; patch: as part of a smooth surface through the points, "
+       "with patch:D by polynomials of "
        "degree D, 1 to 4 [3], and with patch:D:H smoother than the length H, as 2x [auto]",
        .choices = words.methods, .is_given = &raw.is_method_given, .group = "how splats are drawn",
        .intro = "Kernels, filters and samples, and the profiles of Gaussian scenes.", .parse_tail = parse_patch,
@@ -309,6 +310,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .group = "raw points", .intro = "What files of points leave out.",
        .acts = {.on = CLI_FACT(RAW), .is_warned = 1}},
       CLI_COLUMNS(&job->opening.columns),
+      CLI_COLORS(&job->opening.colors_are),
       {"tile", CLI_INT, &o->tile, "N",
        "the edge, in pixels, of the squares that a picture is drawn in: 8, 16, 32 or 64; changes no bit of it [64]", 8,
        64, .group = "what draws", .intro = "On what, and how, it is computed; the picture stays the same.",

@@ -123,6 +123,10 @@ conic_status conic_model_read_kind(conic_input *input, conic_model_kind kind, co
                                    const conic_delivery *delivery, conic_model *model) {
   conic_status status = conic_assimp_reads(kind) ? conic_assimp_read(input, kind, options, model)
                                                  : readers[kind](input, options, delivery, model);
+  if (kind == CONIC_MODEL_STL || (model->points.color[0] && !model->colors_are))
+    model->colors_are = kind == CONIC_MODEL_GLTF || kind == CONIC_MODEL_GLB ? CONIC_COLORS_LINEAR
+                        : model->points.color[0] || model->faces            ? CONIC_COLORS_CODES
+                                                                            : CONIC_COLORS_NONE;
   if (kind == CONIC_MODEL_LAS || kind == CONIC_MODEL_E57 || kind == CONIC_MODEL_PTX)
     model->up[2] = 1.0;
   model->kind = kind;

@@ -13,6 +13,7 @@ typedef struct conic_model_shape {
   int can_part;      /* parts can be read without what comes before them; else nothing below is known */
   int is_raw;        /* points without normals and axes */
   int needs_survey;  /* the meaning of its colours is known once all have been read */
+  unsigned raw_kind; /* then they are of that conic_raw_kind */
   uint64_t n_points; /* all, wanted or not */
   unsigned fields;   /* bits of conic_splats_field, if the file becomes such points and nothing else; else 0 */
 } conic_model_shape;

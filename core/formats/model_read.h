@@ -19,6 +19,12 @@ conic_status conic_mesh_stream(conic_context *context, const char *path, conic_b
                                conic_status (*receive_faces)(void *cookie, const uint32_t (*corners)[3], size_t n),
                                void *cookie);
 
+/* Whether its colours are fractions of 1, whose meaning conic_read_options.colors_are says. */
+static inline int conic_model_has_fractions(const conic_model *model) {
+  return (model->colors_are == CONIC_COLORS_DISPLAY || model->colors_are == CONIC_COLORS_LINEAR) &&
+         model->kind != CONIC_MODEL_GLTF && model->kind != CONIC_MODEL_GLB;
+}
+
 /* Null options become the defaults. Errors: ARGUMENT. */
 conic_status conic_read_options_check(conic_context *context, const char *path, const conic_read_options *options,
                                       conic_read_options *settings);

@@ -59,12 +59,13 @@ static conic_status read_whole_stream(streaming *s, conic_input *input) {
 }
 
 /* A first pass finds the scale of the colours, a second hands over the points. */
-static conic_status pass_twice(streaming *s, conic_input *input, const char *path) {
+static conic_status pass_twice(streaming *s, conic_input *input, const char *path, unsigned raw_kind) {
   conic_input again;
-  int may_be_fractions = s->kind == CONIC_MODEL_XYZ || s->kind == CONIC_MODEL_PCD;
+  if (s->kind == CONIC_MODEL_XYZ || s->kind == CONIC_MODEL_PCD)
+    raw_kind = conic_raw_kind_of(s->options);
   conic_status status = pass(s, input, see_colors, s);
   if (status == CONIC_OK)
-    status = conic_raw_colors_scale(s->context, &s->range, may_be_fractions, &s->scale);
+    status = conic_raw_colors_scale(s->context, &s->range, raw_kind, &s->scale);
   if (status == CONIC_OK)
     status = conic_input_open(s->context, path, &again);
   if (status != CONIC_OK)
@@ -130,7 +131,7 @@ conic_status conic_model_stream(conic_context *context, const char *path, const 
   else if (status == CONIC_OK && (s.kind == CONIC_MODEL_OBJ || s.kind >= CONIC_MODEL_STL || is_pipe))
     status = read_whole_stream(&s, &input);
   else if (status == CONIC_OK)
-    status = pass_twice(&s, &input, path);
+    status = pass_twice(&s, &input, path, shape.raw_kind);
   conic_input_close(&input);
   conic_memory_release(context, s.scale.table);
   return status;
@@ -199,7 +200,7 @@ conic_status conic_model_stream_part(conic_context *context, const char *path, c
   if (status == CONIC_OK)
     status = conic_read_options_check(context, path, options, &settings);
   if (status == CONIC_OK && shape.needs_survey)
-    status = conic_raw_colors_scale(context, &survey->colors, 0, &s.scale);
+    status = conic_raw_colors_scale(context, &survey->colors, shape.raw_kind, &s.scale);
   if (status == CONIC_OK)
     status =
         shape.needs_survey ? pass_over_part(&s, path, decode_batch, &s) : pass_over_part(&s, path, receive, cookie);

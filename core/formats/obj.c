@@ -1,8 +1,8 @@
 #include "core/formats/readers.h"
 
-#include "core/base/color.h"
 #include "core/base/vectors.h"
 #include "core/splats/polygon.h"
+#include "core/splats/raw_colors.h"
 
 /* A face's corner that names a normal; the normal may be read later. */
 typedef struct obj_corner {
@@ -33,7 +33,7 @@ typedef struct obj_reader {
 /* A corner's vertex, texture coordinate and normal; CONIC_NO_CORNER where it lacks one. */
 typedef uint32_t face_corner[3];
 
-/* v x y z, then nothing, a weight (unused), r g b, or r g b a. Colours are sRGB-encoded, 0 to 1. */
+/* v x y z, then nothing, a weight (unused), r g b, or r g b a. What colours are fractions of, the whole file tells. */
 static conic_status read_vertex(void *data) {
   obj_reader *reader = data;
   double values[7];
@@ -54,7 +54,7 @@ static conic_status read_vertex(void *data) {
     return status;
   conic_builder_store_position(&reader->builder, values);
   for (int channel = 0; channel < 3 && points->color[0]; channel++)
-    points->color[channel][points->count] = n >= 6 ? (float)conic_srgb_decode(values[3 + channel]) : 1.0f;
+    points->color[channel][points->count] = n >= 6 ? (float)values[3 + channel] : 1.0f;
   points->count++;
   reader->counts[VERTEX]++;
   return CONIC_OK;
@@ -334,6 +334,8 @@ conic_status conic_obj_read(conic_input *input, const conic_read_options *option
     drop_missing(&reader);
   if (status == CONIC_OK)
     status = gather_normals(&reader);
+  if (status == CONIC_OK)
+    status = conic_raw_colors_decode(input->context, model, conic_raw_kind_of(options));
   conic_memory_release_these(input->context, reader.normals, reader.corners);
   return status;
 }

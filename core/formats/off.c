@@ -1,8 +1,8 @@
 /* OFF: a polygon mesh as text. [ST][C][N]OFF says what a vertex has beside its place; many files leave that out. */
-#include "core/base/color.h"
 #include "core/formats/readers.h"
 #include "core/splats/face_colors.h"
 #include "core/splats/polygon.h"
+#include "core/splats/raw_colors.h"
 
 /* On a line: enough for polygons of a thousand corners. */
 enum { MOST_NUMBERS = 1024 };
@@ -99,16 +99,11 @@ static conic_status read_vertices(off_reader *reader, int *is_done) {
 static conic_status end_face(off_reader *reader, size_t first, const double *numbers, int n) {
   conic_context *context = reader->input->context;
   conic_model *model = reader->builder.model;
-  double linear[3] = {1.0, 1.0, 1.0}, largest = 0.0;
-  n = n < 4 ? n : 4;
+  const double none[3] = {NAN, NAN, NAN};
   conic_status status = CONIC_OK;
-  for (int i = 0; i < n && n >= 3; i++)
-    largest = numbers[i] > largest ? numbers[i] : largest;
-  for (int i = 0; i < 3 && n >= 3; i++)
-    linear[i] = conic_srgb_decode(largest > 1.0 ? numbers[i] / 255.0 : numbers[i]);
   reader->has_face_colors |= n >= 3;
   if (!model->points.color[0])
-    status = conic_face_colors_take(context, &reader->colors, model, first, linear);
+    status = conic_face_colors_take(context, &reader->colors, model, first, n >= 3 ? numbers : none);
   for (size_t i = first; model->faces && i < model->n_triangles && status == CONIC_OK; i++)
     status = conic_faces_add(context, model->faces, NULL, NULL);
   conic_polygon_settle(model, first);
@@ -178,7 +173,7 @@ conic_status conic_off_read(conic_input *input, const conic_read_options *option
   if (status == CONIC_OK)
     status = read_vertices(&reader, &is_done);
   if (status == CONIC_OK && model->points.color[0])
-    status = conic_raw_colors_decode(input->context, &model->points, 1);
+    status = conic_raw_colors_decode(input->context, model, conic_raw_kind_of(options));
   else if (status == CONIC_OK && options->keeps_faces)
     status = conic_faces_create(input->context, &model->faces);
   if (status == CONIC_OK)
@@ -186,7 +181,7 @@ conic_status conic_off_read(conic_input *input, const conic_read_options *option
   if (!reader.has_face_colors) {
     conic_faces_destroy(input->context, model->faces);
     model->faces = NULL;
-    conic_face_colors_finish(&reader.builder, &reader.colors, CONIC_ERROR_INPUT); /* lets go of them */
+    conic_face_colors_finish(&reader.builder, &reader.colors, 0, CONIC_ERROR_INPUT); /* lets go of them */
   }
-  return conic_face_colors_finish(&reader.builder, &reader.colors, status);
+  return conic_face_colors_finish(&reader.builder, &reader.colors, conic_raw_kind_of(options), status);
 }

@@ -142,8 +142,16 @@ static int needs_origin(conic_ply_type type) {
 }
 
 int conic_ply_layout_has_codes(const conic_ply_layout *layout) {
-  return layout->fields & CONIC_SPLATS_COLORS && !layout->has_harmonics &&
-         layout->type[CONIC_PLY_RED] == CONIC_PLY_UINT16;
+  return layout->colors_are == CONIC_COLORS_DISPLAY ||
+         (layout->colors_are == CONIC_COLORS_CODES && layout->type[CONIC_PLY_RED] == CONIC_PLY_UINT16);
+}
+
+conic_color_meaning conic_ply_colors_are(int is_conics, const conic_read_options *options, conic_ply_type type) {
+  if (conic_ply_type_is_integer(type))
+    return CONIC_COLORS_CODES;
+  if (options->colors_are)
+    return (conic_color_meaning)options->colors_are;
+  return is_conics ? CONIC_COLORS_LINEAR : CONIC_COLORS_DISPLAY;
 }
 
 conic_status conic_ply_layout_find(conic_input *input, const conic_ply_header *header,
@@ -173,7 +181,12 @@ conic_status conic_ply_layout_find(conic_input *input, const conic_ply_header *h
     layout->fields |= CONIC_SPLATS_TANGENTS;
   if (layout->form == CONIC_PLY_NORMALS)
     layout->fields |= CONIC_SPLATS_NORMALS;
-  if (layout->has_harmonics || has_columns(layout, CONIC_PLY_RED, 3))
+  if (layout->has_harmonics)
+    layout->colors_are = CONIC_COLORS_TRAINED;
+  else if (has_columns(layout, CONIC_PLY_RED, 3))
+    layout->colors_are =
+        conic_ply_colors_are(header->is_conics || layout->form == CONIC_PLY_AXES, options, layout->type[CONIC_PLY_RED]);
+  if (layout->colors_are)
     layout->fields |= CONIC_SPLATS_COLORS;
   if (has_columns(layout, CONIC_PLY_OPACITY, 1))
     layout->fields |= CONIC_SPLATS_OPACITIES;
@@ -275,17 +288,17 @@ static void store_gaussians(const conic_ply_layout *layout, const conic_ply_bloc
   }
 }
 
-/* Integers are sRGB codes, of 16 bits or of 8; floats are linear. Of 16 bits, many programs use 8. */
+/* Integers are sRGB codes, of 16 bits or of 8. Of 16 bits, many programs use 8. */
 static void store_colors(const conic_ply_layout *layout, const double *values, size_t n, conic_ply_type type,
                          float *to) {
   for (size_t i = 0; i < n; i++) {
     double value = values[i];
     if (layout->has_harmonics)
       to[i] = (float)conic_gaussian_color(value);
-    else if (!conic_ply_type_is_integer(type))
+    else if (layout->keeps_codes || layout->colors_are == CONIC_COLORS_LINEAR)
       to[i] = (float)value;
-    else if (type == CONIC_PLY_UINT16)
-      to[i] = (float)(layout->keeps_codes ? value : conic_srgb_decode(value / 65535.0));
+    else if (layout->colors_are == CONIC_COLORS_DISPLAY || type == CONIC_PLY_UINT16)
+      to[i] = (float)conic_srgb_decode(type == CONIC_PLY_UINT16 ? value / 65535.0 : value);
     else
       to[i] = layout->srgb[value > 0.0 ? value < 255.0 ? (int)value : 255 : 0];
   }

@@ -3,6 +3,7 @@
 
 #include "core/formats/ply_header.h"
 #include "core/splats/builder.h"
+#include "core/splats/raw_colors.h"
 
 /* The meanings of vertex properties. Those of three components are consecutive. */
 typedef enum conic_ply_column {
@@ -51,12 +52,21 @@ typedef struct conic_ply_layout {
                                                 −1: none */
   int clip_property[2];                      /* the lists of clip lines, by conic_clip_operator; -1: none */
   float cutoff;
-  int keeps_codes; /* colours of 16 bits are kept as they stand, until the whole file tells what white is */
+  conic_color_meaning colors_are; /* DISPLAY: perhaps codes */
+  int keeps_codes; /* colours of more than 8 bits are kept as they stand, until the whole file tells what white is */
   float srgb[256]; /* linear values of 8-bit codes */
 } conic_ply_layout;
 
-/* Whether it has colours of 16 bits, whose scale the whole file tells (core/splats/raw_colors.h). */
+/* Whether the scale of its colours is told by the whole file (core/splats/raw_colors.h): those of more than 8 bits that
+ * are not linear. And of which conic_raw_kind they are. */
 int conic_ply_layout_has_codes(const conic_ply_layout *layout);
+static inline unsigned conic_ply_raw_kind(conic_color_meaning meaning) {
+  return meaning == CONIC_COLORS_CODES    ? 0u
+         : meaning == CONIC_COLORS_LINEAR ? (unsigned)CONIC_RAW_FRACTIONS | (unsigned)CONIC_RAW_LINEAR
+                                          : (unsigned)CONIC_RAW_FRACTIONS;
+}
+/* What colours of that type mean: in conic's own files, fractions are linear. */
+conic_color_meaning conic_ply_colors_are(int is_conics, const conic_read_options *options, conic_ply_type type);
 
 /* Finds what the vertices hold. The options' cutoff turns radii into standard deviations. Texture coordinates are left
  * out unless `keeps_coordinates`, alpha unless the options keep it. Errors: INPUT (no x, y, z). */

@@ -1,3 +1,4 @@
+#include "core/formats/ply_columns.h"
 #include "core/formats/ply_texture.h"
 #include "core/formats/readers.h"
 #include "core/splats/polygon.h"
@@ -110,7 +111,7 @@ static conic_status deliver_faces(conic_builder *builder, int is_last) {
 }
 
 conic_status conic_ply_read_faces(conic_ply_source *source, const conic_ply_header *header, uint64_t n_vertices,
-                                  conic_builder *builder) {
+                                  const conic_read_options *options, conic_builder *builder) {
   const conic_ply_element *element = source->element;
   triangulation faces = {.source = source, .builder = builder, .n_vertices = n_vertices};
   int i_indices = conic_ply_find_property(header, element, "vertex_indices");
@@ -133,7 +134,9 @@ conic_status conic_ply_read_faces(conic_ply_source *source, const conic_ply_head
     if (status == CONIC_OK)
       status = deliver_faces(builder, 0);
   }
-  conic_status colored = conic_face_colors_finish(builder, &faces.texture.colors, source->is_cut ? CONIC_OK : status);
+  const unsigned kind = conic_ply_raw_kind(conic_ply_colors_are(header->is_conics, options, faces.texture.color_type));
+  conic_status colored =
+      conic_face_colors_finish(builder, &faces.texture.colors, kind, source->is_cut ? CONIC_OK : status);
   if (colored == CONIC_OK)
     colored = deliver_faces(builder, 1);
   return status == CONIC_OK || colored != CONIC_OK ? colored : status;

@@ -175,6 +175,7 @@ static conic_status read_comment(conic_input *input, const header_line *line, co
     c++;
   if (has_keyword(&c, end, "TextureFile"))
     return read_texture_name(input, line, c, end, &header->textures);
+  header->is_conics |= has_keyword(&c, end, "conic");
   if (has_keyword(&c, end, "Vertical axis:"))
     read_up(c, end, header->up);
   else

@@ -47,6 +47,7 @@ typedef struct conic_ply_header {
   conic_texts textures;            /* comment TextureFile NAME */
   conic_ply_splat_mode splat_mode; /* comment SplatRenderMode: NAME, or antialiased 1 */
   float up[3];                     /* comment Vertical axis: z, or X Y Z; of any length, and 0 where there is none */
+  int is_conics;                   /* comment conic VERSION: its float colours are linear */
 } conic_ply_header;
 
 /* Reads from "ply" to past "end_header". On success the caller releases *header; on failure it is empty.

@@ -264,7 +264,7 @@ static conic_status read_vertices(vertex_reader *reader, uint64_t n_there) {
 
 /* Elements are in the header's order; unknown ones are skipped. */
 static conic_status read_elements(vertex_reader *reader, const conic_ply_header *header,
-                                  const conic_ply_element *vertices) {
+                                  const conic_ply_element *vertices, const conic_read_options *options) {
   conic_ply_source *source = reader->source;
   conic_status status = CONIC_OK;
   for (size_t i = 0; status == CONIC_OK && i < header->n_elements; i++) {
@@ -274,7 +274,7 @@ static conic_status read_elements(vertex_reader *reader, const conic_ply_header 
       status = read_vertices(reader, n_there);
     else if ((!reader->builder->delivery || reader->builder->delivery->receive_faces) && element->count > 0 &&
              (strcmp(element->name, "face") == 0 || strcmp(element->name, "tristrips") == 0))
-      status = conic_ply_read_faces(source, header, vertices->count, reader->builder);
+      status = conic_ply_read_faces(source, header, vertices->count, options, reader->builder);
     else
       status = conic_ply_skip_element(source, header);
     if (element == vertices && source->i_row < element->count)
@@ -299,11 +299,15 @@ static conic_status read_body(conic_input *input, const conic_read_options *opti
     return CONIC_ERROR_MEMORY;
   reader->source = &source;
   reader->builder = &builder;
+  const conic_delivery *at_end = NULL;
   int keeps_coordinates = options->keeps_faces && !delivery;
   conic_status status = conic_ply_layout_find(input, header, vertices, options, keeps_coordinates, &reader->layout);
   if (status == CONIC_OK) {
-    reader->layout.keeps_codes =
-        conic_ply_layout_has_codes(&reader->layout) && (!delivery || delivery->is_survey || delivery->is_again);
+    reader->layout.keeps_codes = conic_ply_layout_has_codes(&reader->layout) && !(delivery && delivery->receive_faces);
+    if (reader->layout.keeps_codes && delivery && !delivery->is_survey && !delivery->is_again) {
+      at_end = delivery; /* a pipe can be read once only */
+      delivery = NULL;
+    }
     reader->properties = header->properties + vertices->first_property; /* there are some, as x, y and z were found */
     status = conic_builder_begin(input->context, model, reader->layout.fields, delivery, &builder);
   }
@@ -313,11 +317,15 @@ static conic_status read_body(conic_input *input, const conic_read_options *opti
       (reader->layout.has_coordinates || conic_ply_has_texture_corners(header) || conic_ply_has_face_colors(header)))
     status = conic_ply_begin_textures(input, header, model);
   if (status == CONIC_OK)
-    status = read_elements(reader, header, vertices);
+    status = read_elements(reader, header, vertices, options);
   if (source.is_cut)
     status = conic_ply_tell_cut(&source, conic_builder_points(&builder) > 0);
+  if (!model->colors_are)
+    model->colors_are = reader->layout.colors_are;
   if (status == CONIC_OK && reader->layout.keeps_codes && !delivery)
-    status = conic_raw_colors_decode(input->context, &model->points, 0);
+    status = conic_raw_colors_decode(input->context, model, conic_ply_raw_kind(reader->layout.colors_are));
+  if (at_end)
+    builder.delivery = at_end;
   if (status == CONIC_OK)
     status = conic_builder_deliver(&builder, 1);
   model->follows_cutoff = reader->layout.form == CONIC_PLY_CIRCLES;
@@ -362,6 +370,7 @@ conic_status conic_ply_look(conic_input *input, const conic_read_options *option
     *shape = (conic_model_shape){.can_part = status == CONIC_OK,
                                  .is_raw = !(layout.fields & (CONIC_SPLATS_TANGENTS | CONIC_SPLATS_NORMALS)),
                                  .needs_survey = conic_ply_layout_has_codes(&layout),
+                                 .raw_kind = conic_ply_raw_kind(layout.colors_are),
                                  .n_points = vertices->count < n_there ? vertices->count : n_there,
                                  .fields = has_faces(&header) || layout.has_harmonics ? 0 : layout.fields};
   }

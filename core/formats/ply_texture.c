@@ -1,7 +1,5 @@
 #include "core/formats/ply_texture.h"
 
-#include "core/base/color.h"
-
 /* The property of that name that is a list, or is none; -1 where there is no such property. */
 static int find(const conic_ply_header *header, const conic_ply_element *element, const char *name, int is_list) {
   int i = conic_ply_find_property(header, element, name);
@@ -131,21 +129,12 @@ conic_status conic_ply_face_texture_read(conic_ply_source *source, const conic_p
   return CONIC_OK;
 }
 
-/* As those of vertices. */
-static conic_status take_color(const conic_ply_source *source, conic_model *model, size_t first,
-                               conic_ply_face_texture *texture) {
-  const double whole = texture->color_type == CONIC_PLY_UINT16 ? 65535.0 : 255.0;
-  double linear[3];
-  for (int k = 0; k < 3; k++)
-    linear[k] = conic_ply_type_is_integer(texture->color_type) ? conic_srgb_decode(texture->values[k] / whole)
-                                                               : texture->values[k];
-  return conic_face_colors_take(source->input->context, &texture->colors, model, first, linear);
-}
-
 conic_status conic_ply_face_texture_end_row(const conic_ply_source *source, uint64_t n_corners, conic_model *model,
                                             size_t first, conic_ply_face_texture *texture) {
   const size_t n_triangles = model->n_triangles - first;
-  conic_status status = texture->color[0] >= 0 ? take_color(source, model, first, texture) : CONIC_OK;
+  conic_status status = texture->color[0] >= 0 ? conic_face_colors_take(source->input->context, &texture->colors, model,
+                                                                        first, texture->values)
+                                               : CONIC_OK;
   if (!texture->faces || status != CONIC_OK)
     return status;
   if (texture->n_values && texture->n_values != 2 * n_corners)

@@ -79,7 +79,7 @@ conic_status conic_ply_look(conic_input *input, const conic_read_options *option
 
 /* Reads a PLY's elements `face` and `tristrips`; the source is at the start of the element's rows. Errors: as above. */
 conic_status conic_ply_read_faces(conic_ply_source *source, const conic_ply_header *header, uint64_t n_vertices,
-                                  conic_builder *builder);
+                                  const conic_read_options *options, conic_builder *builder);
 
 /* --- what is lent --- */
 

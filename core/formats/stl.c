@@ -3,11 +3,11 @@
 #include <strings.h>
 
 #include "core/base/byte_order.h"
-#include "core/base/color.h"
 #include "core/files/number.h"
 #include "core/formats/readers.h"
 #include "core/meshes/point_slots.h"
 #include "core/splats/face_colors.h"
+#include "core/splats/raw_colors.h"
 
 enum { HEAD_BYTES = 84, FACE_BYTES = 50 };
 
@@ -47,13 +47,13 @@ static conic_status add_corner(stl_reader *reader, const double place[3]) {
 }
 
 /* Notes the triangles from `first` on, which have a colour; null: none. */
-static conic_status end_face(stl_reader *reader, size_t first, const double *linear) {
-  static const double white[3] = {1.0, 1.0, 1.0};
+static conic_status end_face(stl_reader *reader, size_t first, const double *color) {
+  static const double none[3] = {NAN, NAN, NAN};
   conic_model *model = reader->builder.model;
   conic_status status = CONIC_OK;
   reader->n_corners = 0;
   if (reader->is_colored)
-    status = conic_face_colors_take(reader->input->context, &reader->colors, model, first, linear ? linear : white);
+    status = conic_face_colors_take(reader->input->context, &reader->colors, model, first, color ? color : none);
   for (size_t i = first; model->faces && i < model->n_triangles && status == CONIC_OK; i++)
     status = conic_faces_add(reader->input->context, model->faces, NULL, NULL);
   return status;
@@ -111,29 +111,29 @@ static void find_colors(stl_reader *reader, const unsigned char *head) {
     if (memcmp(head + at, mark, sizeof mark - 1) == 0) {
       reader->is_magics = reader->is_colored = 1;
       for (int channel = 0; channel < 3; channel++)
-        reader->whole_color[channel] = conic_srgb_decode(head[at + sizeof mark - 1 + (size_t)channel] / 255.0);
+        reader->whole_color[channel] = head[at + sizeof mark - 1 + (size_t)channel] / 255.0;
     }
 }
 
 /* Five bits a channel: from red on where Magics writes them, whose uppermost bit stands for the colour of all; from
  * blue on where VisCAM does, whose uppermost bit says that there is one. Returns null where there is none. */
-static const double *take_color(const stl_reader *reader, unsigned bits, double linear[3]) {
+static const double *take_color(const stl_reader *reader, unsigned bits, double color[3]) {
   if (reader->is_magics && bits >> 15)
     return reader->whole_color;
   if (!reader->is_magics && !(bits >> 15))
     return NULL;
   for (int channel = 0; channel < 3; channel++) {
     int shift = 5 * (reader->is_magics ? channel : 2 - channel);
-    linear[channel] = conic_srgb_decode((double)(bits >> shift & 31) / 31.0);
+    color[channel] = (double)(bits >> shift & 31) / 31.0;
   }
-  return linear;
+  return color;
 }
 
 static conic_status read_binary_face(stl_reader *reader) {
   const unsigned char *bytes = conic_input_bytes(reader->input);
   const size_t first = reader->builder.model->n_triangles;
   const unsigned bits = conic_load_16(bytes + FACE_BYTES - 2);
-  double linear[3];
+  double color[3];
   conic_status status = CONIC_OK;
   for (size_t corner = 0; corner < 3 && status == CONIC_OK; corner++) {
     double place[3];
@@ -142,7 +142,7 @@ static conic_status read_binary_face(stl_reader *reader) {
     status = add_corner(reader, place);
   }
   reader->input->next += FACE_BYTES;
-  return status == CONIC_OK ? end_face(reader, first, take_color(reader, bits, linear)) : status;
+  return status == CONIC_OK ? end_face(reader, first, take_color(reader, bits, color)) : status;
 }
 
 /* Colours of VisCAM show in the first face of many. */
@@ -212,5 +212,5 @@ conic_status conic_stl_read(conic_input *input, const conic_read_options *option
     model->faces = NULL;
   }
   conic_memory_release(input->context, reader.slots.slots);
-  return conic_face_colors_finish(&reader.builder, &reader.colors, status);
+  return conic_face_colors_finish(&reader.builder, &reader.colors, CONIC_RAW_FRACTIONS, status);
 }

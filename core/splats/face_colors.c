@@ -3,72 +3,114 @@
 #include "conic/triangles.h"
 #include "core/base/color.h"
 #include "core/splats/faces.h"
+#include "core/splats/raw_colors.h"
 
 /* Half of the table's places are used at most; further colours get the material of the last one. */
 enum { TABLE_BITS = 17, TABLE_SIZE = 1 << TABLE_BITS, MOST_COLORS = TABLE_SIZE / 2 };
 
-static uint32_t code_of(const double linear[3]) {
+conic_status conic_face_colors_take(conic_context *context, conic_face_colors *colors, const conic_model *model,
+                                    size_t first, const double raw[3]) {
+  conic_splats *to = &colors->raw;
+  if (to->count == 0)
+    colors->first = first;
+  const size_t count = model->n_triangles - colors->first;
+  for (int channel = 0; channel < 3; channel++) {
+    size_t room = colors->room;
+    if (conic_memory_reserve(context, &to->color[channel], to->count, count, &room, sizeof(float)) != CONIC_OK)
+      return CONIC_ERROR_MEMORY;
+    if (channel == 2)
+      colors->room = room;
+    for (size_t i = first - colors->first; i < count; i++)
+      to->color[channel][i] = (float)raw[channel];
+  }
+  to->count = count;
+  return CONIC_OK;
+}
+
+static uint32_t code_of(const float linear[3]) {
   uint32_t code = 0;
   for (int channel = 0; channel < 3; channel++)
-    code = code << 8 | (uint32_t)(conic_srgb_encode(fmin(1.0, fmax(0.0, linear[channel]))) * 255.0 + 0.5);
+    code = code << 8 | (uint32_t)(conic_srgb_encode(fmin(1.0, fmax(0.0, (double)linear[channel]))) * 255.0 + 0.5);
   return code;
 }
 
 /* The material of a colour. A place of the table holds a code and 1, and a material; 0: nothing. */
-static conic_status find_material(conic_context *context, conic_face_colors *colors, conic_faces *faces,
-                                  const double linear[3]) {
-  if (!colors->table)
-    colors->table = conic_memory_allocate_zeroed(context, (size_t)2 * TABLE_SIZE, sizeof *colors->table);
-  if (!colors->table)
-    return CONIC_ERROR_MEMORY;
+static conic_status find_material(conic_context *context, uint32_t *table, conic_faces *faces, const float linear[3],
+                                  uint32_t *found) {
   const uint32_t code = code_of(linear) + 1;
   uint32_t place = (code * UINT32_C(2654435761)) >> (32 - TABLE_BITS);
-  while (colors->table[2 * place] && colors->table[2 * place] != code)
+  while (table[2 * place] && table[2 * place] != code)
     place = (place + 1) % TABLE_SIZE;
-  if (!colors->table[2 * place] && faces->n_made < MOST_COLORS) {
-    const conic_material material = {.color = {(float)linear[0], (float)linear[1], (float)linear[2]}};
-    colors->table[2 * place] = code;
-    colors->table[2 * place + 1] = (uint32_t)faces->n_made;
+  if (!table[2 * place] && faces->n_made < MOST_COLORS) {
+    const conic_material material = {.color = {linear[0], linear[1], linear[2]}};
+    table[2 * place] = code;
+    table[2 * place + 1] = (uint32_t)faces->n_made;
     conic_status status = conic_faces_add_material(context, faces, &material);
     if (status != CONIC_OK)
       return status;
   }
-  faces->current_material = colors->table[2 * place] ? colors->table[2 * place + 1] : MOST_COLORS - 1;
+  *found = table[2 * place] ? table[2 * place + 1] : MOST_COLORS - 1;
   return CONIC_OK;
 }
 
-static conic_status add_to_vertices(conic_context *context, conic_face_colors *colors, const conic_model *model,
-                                    size_t first, const double linear[3]) {
-  const size_t n_before = colors->n_sums;
-  if (conic_memory_reserve(context, &colors->sums, n_before, model->points.count, &colors->n_sums,
-                           sizeof *colors->sums) != CONIC_OK)
-    return CONIC_ERROR_MEMORY;
-  if (colors->n_sums > n_before)
-    memset(colors->sums + n_before, 0, (colors->n_sums - n_before) * sizeof *colors->sums);
-  for (size_t i = 3 * first; i < 3 * model->n_triangles; i++) {
-    float *sum = colors->sums[model->triangles[i / 3][i % 3]];
-    for (int channel = 0; channel < 3; channel++)
-      sum[channel] += (float)linear[channel];
-    sum[3] += 1.0f;
+/* The colour of triangle i behind the first. Where all numbers were 0 there is no array: that is black by any scale. */
+static void color_at(const conic_face_colors *colors, size_t i, float linear[3]) {
+  int is_finite = 1;
+  for (int channel = 0; channel < 3; channel++) {
+    linear[channel] = colors->raw.color[channel] ? colors->raw.color[channel][i] : 0.0f;
+    is_finite &= linear[channel] - linear[channel] == 0.0f;
   }
-  return CONIC_OK;
+  for (int channel = 0; channel < 3 && !is_finite; channel++)
+    linear[channel] = 1.0f;
 }
 
-conic_status conic_face_colors_take(conic_context *context, conic_face_colors *colors, conic_model *model, size_t first,
-                                    const double linear[3]) {
-  return model->faces ? find_material(context, colors, model->faces, linear)
-                      : add_to_vertices(context, colors, model, first, linear);
+static conic_status give_to_faces(conic_context *context, const conic_face_colors *colors, conic_faces *faces) {
+  uint32_t *table = conic_memory_allocate_zeroed(context, (size_t)2 * TABLE_SIZE, sizeof *table);
+  conic_status status = table ? CONIC_OK : CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < colors->raw.count && colors->first + i < faces->count && status == CONIC_OK; i++) {
+    float linear[3];
+    color_at(colors, i, linear);
+    status = find_material(context, table, faces, linear, &faces->material[colors->first + i]);
+  }
+  for (size_t i = 0; i < colors->first && i < faces->count; i++)
+    faces->material[i] = (uint32_t)faces->n_made; /* white */
+  conic_memory_release(context, table);
+  return status;
 }
 
-conic_status conic_face_colors_finish(conic_builder *builder, conic_face_colors *colors, conic_status status) {
+static conic_status give_to_vertices(conic_builder *builder, const conic_face_colors *colors) {
   conic_splats *points = &builder->model->points;
-  if (status == CONIC_OK && colors->sums)
-    status = conic_builder_add_field(builder, CONIC_SPLATS_COLORS);
-  for (size_t i = 0; status == CONIC_OK && colors->sums && i < points->count; i++)
+  float(*sums)[4] = conic_memory_allocate_zeroed(builder->context, points->count, sizeof *sums);
+  conic_status status = sums ? conic_builder_add_field(builder, CONIC_SPLATS_COLORS) : CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < colors->raw.count && colors->first + i < builder->model->n_triangles && sums; i++) {
+    float linear[3];
+    color_at(colors, i, linear);
+    for (int k = 0; k < 3; k++) {
+      float *sum = sums[builder->model->triangles[colors->first + i][k]];
+      for (int channel = 0; channel < 3; channel++)
+        sum[channel] += linear[channel];
+      sum[3] += 1.0f;
+    }
+  }
+  for (size_t i = 0; status == CONIC_OK && i < points->count; i++)
     for (int channel = 0; channel < 3; channel++)
-      points->color[channel][i] =
-          i < colors->n_sums && colors->sums[i][3] > 0.0f ? colors->sums[i][channel] / colors->sums[i][3] : 1.0f;
-  conic_memory_release_these(builder->context, colors->table, colors->sums);
-  *colors = (conic_face_colors){NULL, NULL, 0};
+      points->color[channel][i] = sums[i][3] > 0.0f ? sums[i][channel] / sums[i][3] : 1.0f;
+  conic_memory_release(builder->context, sums);
+  return status;
+}
+
+conic_status conic_face_colors_finish(conic_builder *builder, conic_face_colors *colors, unsigned kind,
+                                      conic_status status) {
+  conic_context *context = builder->context;
+  conic_color_meaning meaning;
+  if (status == CONIC_OK && colors->raw.count > 0) {
+    status = conic_raw_colors_decode_set(context, &colors->raw, kind, &meaning);
+    builder->model->colors_are = meaning;
+    if (status == CONIC_OK)
+      status = builder->model->faces ? give_to_faces(context, colors, builder->model->faces)
+                                     : give_to_vertices(builder, colors);
+  }
+  conic_memory_release_these(context, colors->raw.color[0], colors->raw.color[1], colors->raw.color[2]);
+  *colors = (conic_face_colors){.first = 0};
   return status;
 }

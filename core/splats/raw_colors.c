@@ -15,6 +15,8 @@ void conic_raw_colors_see(const conic_splats *points, conic_raw_range *range) {
   for (int channel = 0; channel < 3 && points->color[0]; channel++)
     for (size_t i = 0; i < points->count; i++) {
       float value = points->color[channel][i];
+      if (!(value - value == 0.0f))
+        continue;
       range->largest = value > range->largest ? value : range->largest;
       range->has_low_bits |= !is_upper_half(value);
       range->has_two_bytes |= !is_one_byte(value);
@@ -39,22 +41,26 @@ static void drop_colors(conic_context *context, conic_splats *points) {
 static int find_whole(const conic_raw_range *range, int may_be_fractions) {
   float largest = range->largest;
   if (largest <= 255.0f)
-    return may_be_fractions && largest <= 1.0f ? 1 : 255;
+    return may_be_fractions && largest < 2.0f ? 1 : 255; /* a little above 1 they are fractions still */
   return !range->has_low_bits ? 65280 : largest <= 4095.0f && range->has_two_bytes ? 4095 : 65535;
 }
 
-conic_status conic_raw_colors_scale(conic_context *context, const conic_raw_range *range, int may_be_fractions,
+static double decode(const conic_raw_scale *scale, double value) {
+  return scale->is_linear ? value : conic_srgb_decode(value / (double)scale->whole);
+}
+
+conic_status conic_raw_colors_scale(conic_context *context, const conic_raw_range *range, unsigned kind,
                                     conic_raw_scale *scale) {
-  *scale = (conic_raw_scale){0, NULL};
+  *scale = (conic_raw_scale){0, 0, NULL};
   if (!(range->largest > 0.0f))
     return CONIC_OK;
-  int whole = find_whole(range, may_be_fractions);
+  int whole = find_whole(range, (kind & CONIC_RAW_FRACTIONS) != 0);
   float *table = conic_memory_allocate(context, (size_t)whole + 1, sizeof *table);
   if (!table)
     return CONIC_ERROR_MEMORY;
+  *scale = (conic_raw_scale){whole, whole == 1 && kind & CONIC_RAW_LINEAR, table};
   for (int code = 0; code <= whole; code++)
-    table[code] = (float)conic_srgb_decode((double)code / (double)whole);
-  *scale = (conic_raw_scale){whole, table};
+    table[code] = (float)decode(scale, (double)code);
   return CONIC_OK;
 }
 
@@ -63,23 +69,34 @@ void conic_raw_colors_apply(const conic_raw_scale *scale, float *values, size_t 
   for (size_t i = 0; i < n; i++) {
     float value = values[i];
     int is_code = value >= 0.0f && value <= (float)scale->whole && value == (float)(int)value;
-    values[i] = is_code ? scale->table[(int)value] : (float)conic_srgb_decode((double)value / (double)scale->whole);
+    values[i] = is_code ? scale->table[(int)value] : (float)decode(scale, (double)value);
   }
 }
 
-conic_status conic_raw_colors_decode(conic_context *context, conic_splats *points, int may_be_fractions) {
+conic_status conic_raw_colors_decode_set(conic_context *context, conic_splats *points, unsigned kind,
+                                         conic_color_meaning *meaning) {
   conic_raw_scale scale;
   conic_raw_range range = {0.0f, 0, 0};
+  *meaning = CONIC_COLORS_NONE;
   if (!points->color[0])
     return CONIC_OK;
   conic_raw_colors_see(points, &range);
-  conic_status status = conic_raw_colors_scale(context, &range, may_be_fractions, &scale);
+  conic_status status = conic_raw_colors_scale(context, &range, kind, &scale);
   if (status != CONIC_OK)
     return status;
   if (!scale.table)
     drop_colors(context, points);
+  else
+    *meaning = scale.whole > 1 ? CONIC_COLORS_CODES : scale.is_linear ? CONIC_COLORS_LINEAR : CONIC_COLORS_DISPLAY;
   for (int channel = 0; channel < 3 && scale.table; channel++)
     conic_raw_colors_apply(&scale, points->color[channel], points->count);
   conic_memory_release(context, scale.table);
   return CONIC_OK;
+}
+
+conic_status conic_raw_colors_decode(conic_context *context, conic_model *model, unsigned kind) {
+  conic_color_meaning meaning;
+  conic_status status = conic_raw_colors_decode_set(context, &model->points, kind, &meaning);
+  model->colors_are = meaning;
+  return status;
 }

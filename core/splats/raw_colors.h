@@ -2,7 +2,7 @@
  * decoded. */
 #pragma once
 
-#include "conic/splats.h"
+#include "conic/model.h"
 
 /* What tells the scale: the largest value, whether any is no multiple of 256, and whether any is no byte twice. Zeroed:
  * none was seen. */
@@ -15,21 +15,35 @@ void conic_raw_colors_see(const conic_splats *points, conic_raw_range *range);
 /* Adds what others have been seen to be. */
 void conic_raw_colors_unite(conic_raw_range *range, const conic_raw_range *other);
 
+/* What is known of values beforehand, as bits. */
+typedef enum conic_raw_kind {
+  CONIC_RAW_FRACTIONS = 1, /* they may be fractions of 1 */
+  CONIC_RAW_LINEAR = 2     /* fractions are linear */
+} conic_raw_kind;
+
+/* Of numbers that may be anything. */
+static inline unsigned conic_raw_kind_of(const conic_read_options *options) {
+  return CONIC_RAW_FRACTIONS | (options->colors_are == CONIC_COLORS_LINEAR ? (unsigned)CONIC_RAW_LINEAR : 0u);
+}
+
 /* How to decode values of that range: what they are fractions of, and the linear value of every whole one up to it,
  * which is null where the colours mean nothing. The caller releases `table`. Errors: MEMORY. */
 typedef struct conic_raw_scale {
-  int whole;
+  int whole, is_linear;
   float *table;
 } conic_raw_scale;
 
-conic_status conic_raw_colors_scale(conic_context *context, const conic_raw_range *range, int may_be_fractions,
+conic_status conic_raw_colors_scale(conic_context *context, const conic_raw_range *range, unsigned kind,
                                     conic_raw_scale *scale);
 
 /* Decodes n values in place. */
 void conic_raw_colors_apply(const conic_raw_scale *scale, float *values, size_t n);
 
-/* Decodes sRGB values in place. The largest of them tells what they are: up to 1 fractions (where `may_be_fractions`),
- * up to 255 codes of 8 bits, up to 4095 codes of 12, beyond that codes of 16. Codes of 8 bits that stand in both bytes
+/* Decodes sRGB values in place, and says in the model what they are. The largest of them tells: below 2 fractions, up
+ * to 255 codes of 8 bits, up to 4095 codes of 12, beyond that codes of 16. Codes of 8 bits that stand in both bytes
  * count as 16. Where all are multiples of 256, they are codes of 8 bits in the upper half, and 255 × 256 is white.
  * Where the largest is 0, nobody has filled them in: they are dropped, and the points are white. Errors: MEMORY. */
-conic_status conic_raw_colors_decode(conic_context *context, conic_splats *points, int may_be_fractions);
+conic_status conic_raw_colors_decode(conic_context *context, conic_model *model, unsigned kind);
+/* The same of colours beside those of the model's points. */
+conic_status conic_raw_colors_decode_set(conic_context *context, conic_splats *points, unsigned kind,
+                                         conic_color_meaning *meaning);

@@ -37,6 +37,15 @@ typedef enum conic_model_kind {
 /* "ply", "obj" …; null for a number that is no kind. */
 CONIC_API const char *conic_model_kind_name(conic_model_kind kind);
 
+/* What the numbers of a file's colours mean. */
+typedef enum conic_color_meaning {
+  CONIC_COLORS_NONE = 0,    /* there are none */
+  CONIC_COLORS_DISPLAY = 1, /* fractions of 1 that are sRGB-encoded, as displays take them */
+  CONIC_COLORS_LINEAR = 2,  /* such that are linear */
+  CONIC_COLORS_CODES = 3,   /* sRGB codes */
+  CONIC_COLORS_TRAINED = 4  /* of Gaussians: harmonics */
+} conic_color_meaning;
+
 /* A value that a file's points have by name; conic_read_options.field may ask for it. */
 typedef struct conic_model_field {
   char name[40];    /* longer ones are cut */
@@ -54,7 +63,9 @@ typedef struct conic_model {
   conic_model_field *fields; /* the other values that the points have by name, in the file's order */
   size_t n_fields;
   uint64_t follows_cutoff; /* 1: the axes were made of radii, by the cutoff that it was read with */
-  uint64_t reserved[2];
+  uint32_t colors_are;     /* of conic_color_meaning: the file's colours of points or faces, decoded by now */
+  uint32_t reserved_word;
+  uint64_t reserved[1];
 } conic_model;
 
 typedef struct conic_read_options {
@@ -85,6 +96,10 @@ typedef struct conic_read_options {
 
   /* Vertices of a PLY or a glTF take their alpha as opacity, where they have no other. */
   int keeps_alpha;
+
+  /* What colours mean that are fractions of 1, in PLY, OBJ, OFF, PCD and text: CONIC_COLORS_DISPLAY or
+   * CONIC_COLORS_LINEAR; else as the file has it, which is linear in conic's own PLY and display in all others. */
+  int colors_are;
 } conic_read_options;
 
 /* Cutoff 1.5, points alone, columns as the file has them. */
@@ -92,13 +107,13 @@ CONIC_API void conic_read_options_init_sized(conic_read_options *options, size_t
 #define conic_read_options_init(options) conic_read_options_init_sized(options, sizeof *(options))
 
 /* Reads a model: PLY, OBJ, LAS, PCD, E57, PTX, text with a point a line, and what Assimp reads
- * (docs/reference/formats.md); "-" is standard input. The content tells the format, then the name's ending. Integer
- * colours of a PLY and all colours of the others are decoded from sRGB, float colours of a PLY are taken as linear.
- * Where a float cannot hold positions (double or 32-bit integer in a PLY, map coordinates in an OBJ, all of text and
- * LAS), they are measured from the first finite one, which becomes the origin; else the origin is zero. On success the
- * caller owns *model and releases it; on failure it is empty and the log says file, line or byte offset, and what is
- * wrong there. Null `options` are the defaults. Errors: ARGUMENT, INPUT, MEMORY, CANCELLED, UNSUPPORTED (a format of
- * Assimp, without Assimp), IO (its process cannot start). */
+ * (docs/reference/formats.md); "-" is standard input. The content tells the format, then the name's ending. Colours are
+ * decoded from sRGB, unless they are linear (docs/reference/formats.md). Where a float cannot hold positions (double or
+ * 32-bit integer in a PLY, map coordinates in an OBJ, all of text and LAS), they are measured from the first finite
+ * one, which becomes the origin; else the origin is zero. On success the caller owns *model and releases it; on failure
+ * it is empty and the log says file, line or byte offset, and what is wrong there. Null `options` are the defaults.
+ * Errors: ARGUMENT, INPUT, MEMORY, CANCELLED, UNSUPPORTED (a format of Assimp, without Assimp), IO (its process cannot
+ * start). */
 CONIC_API conic_status conic_model_read(conic_context *context, const char *path, const conic_read_options *options,
                                         conic_model *model);
 

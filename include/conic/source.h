@@ -60,6 +60,7 @@ typedef struct conic_source_options {
   int keeps_alpha;   /* of a file's vertices, as in conic_read_options */
   const char *cache; /* a folder that keeps what an error or a budget has built of splats and triangles in memory, up to
                         4 GiB, by what these hold: several processes may use it at a time; null: none */
+  int colors_are;    /* what fractions of 1 mean as colours, as in conic_read_options */
 } conic_source_options;
 
 /* Splats, cutoff 1.5, 20 neighbours, no dots, flat faces. */

@@ -91,6 +91,7 @@ def render(
     reflect: Optional[float] = None,
     k: Optional[int] = None,
     columns: Optional[Union[str, float, Sequence[float]]] = None,
+    colors: Optional[Literal["file", "display", "linear"]] = None,
     tile: Optional[int] = None,
     device: Optional[Union[str, float, Sequence[float]]] = None,
     plain: Optional[bool] = None,
@@ -250,6 +251,8 @@ def render(
         picked by its name in Nuke or Blender [rgba,Z]
     k: how many neighbours a raw point's size and normal are estimated from, 6 to 64 [20]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
+    colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
+        ones, as conic's .ply has them: file, display, linear [file]
     tile: the edge, in pixels, of the squares that a picture is drawn in: 8, 16, 32 or 64; changes no bit of it
         [64]
     device: what draws: cpu, opencl (the first device) or opencl:P.D (see conic devices), which :gather makes go
@@ -322,6 +325,7 @@ def verify(
     planes: Optional[Union[str, float, Sequence[float]]] = None,
     k: Optional[int] = None,
     columns: Optional[Union[str, float, Sequence[float]]] = None,
+    colors: Optional[Literal["file", "display", "linear"]] = None,
     tile: Optional[int] = None,
     device: Optional[Union[str, float, Sequence[float]]] = None,
     plain: Optional[bool] = None,
@@ -429,6 +433,8 @@ def verify(
         picked by its name in Nuke or Blender [rgba,Z]
     k: how many neighbours a raw point's size and normal are estimated from, 6 to 64 [20]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
+    colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
+        ones, as conic's .ply has them: file, display, linear [file]
     tile: the edge, in pixels, of the squares that a picture is drawn in: 8, 16, 32 or 64; changes no bit of it
         [64]
     device: what draws: cpu, opencl (the first device) or opencl:P.D (see conic devices), which :gather makes go
@@ -509,6 +515,7 @@ def judge(
     planes: Optional[Union[str, float, Sequence[float]]] = None,
     k: Optional[int] = None,
     columns: Optional[Union[str, float, Sequence[float]]] = None,
+    colors: Optional[Literal["file", "display", "linear"]] = None,
     tile: Optional[int] = None,
     device: Optional[Union[str, float, Sequence[float]]] = None,
     plain: Optional[bool] = None,
@@ -623,6 +630,8 @@ def judge(
         picked by its name in Nuke or Blender [rgba,Z]
     k: how many neighbours a raw point's size and normal are estimated from, 6 to 64 [20]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
+    colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
+        ones, as conic's .ply has them: file, display, linear [file]
     tile: the edge, in pixels, of the squares that a picture is drawn in: 8, 16, 32 or 64; changes no bit of it
         [64]
     device: what draws: cpu, opencl (the first device) or opencl:P.D (see conic devices), which :gather makes go
@@ -694,6 +703,7 @@ def explain(
     planes: Optional[Union[str, float, Sequence[float]]] = None,
     k: Optional[int] = None,
     columns: Optional[Union[str, float, Sequence[float]]] = None,
+    colors: Optional[Literal["file", "display", "linear"]] = None,
     tile: Optional[int] = None,
     device: Optional[Union[str, float, Sequence[float]]] = None,
     plain: Optional[bool] = None,
@@ -797,6 +807,8 @@ def explain(
         picked by its name in Nuke or Blender [rgba,Z]
     k: how many neighbours a raw point's size and normal are estimated from, 6 to 64 [20]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
+    colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
+        ones, as conic's .ply has them: file, display, linear [file]
     tile: the edge, in pixels, of the squares that a picture is drawn in: 8, 16, 32 or 64; changes no bit of it
         [64]
     device: what draws: cpu, opencl (the first device) or opencl:P.D (see conic devices), which :gather makes go
@@ -946,6 +958,7 @@ def prepare(
     count: Optional[Union[int, str]] = None,
     seed: Optional[Union[int, str]] = None,
     columns: Optional[Union[str, float, Sequence[float]]] = None,
+    colors: Optional[Literal["file", "display", "linear"]] = None,
     allow_outside: Optional[bool] = None,
     where: Optional[PathLike] = None,
     plain: Optional[bool] = None,
@@ -968,6 +981,8 @@ def prepare(
     count: keep N of the points, chosen at random, and fit the sizes to them
     seed: which points --count chooses; those of a smaller count are among those of a larger one [0]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
+    colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
+        ones, as conic's .ply has them: file, display, linear [file]
     allow_outside: a glTF may name buffers and pictures outside of its folder
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
@@ -994,6 +1009,7 @@ def octree(
     cutoff: Optional[float] = None,
     k: Optional[int] = None,
     columns: Optional[Union[str, float, Sequence[float]]] = None,
+    colors: Optional[Literal["file", "display", "linear"]] = None,
     allow_outside: Optional[bool] = None,
     where: Optional[PathLike] = None,
     color_by: Optional[PathLike] = None,
@@ -1009,6 +1025,8 @@ def octree(
     cutoff: the --cutoff of the pictures to come [1.5]
     k: neighbours that a raw point's size is estimated from, 6 to 64 [20]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
+    colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
+        ones, as conic's .ply has them: file, display, linear [file]
     allow_outside: a glTF may name buffers and pictures outside of its folder
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
@@ -1039,6 +1057,7 @@ def layers(
     resume: Optional[PathLike] = None,
     where: Optional[PathLike] = None,
     columns: Optional[Union[str, float, Sequence[float]]] = None,
+    colors: Optional[Literal["file", "display", "linear"]] = None,
     allow_outside: Optional[bool] = None,
     color_by: Optional[PathLike] = None,
     ramp: Optional[Union[str, float, Sequence[float]]] = None,
@@ -1065,6 +1084,8 @@ def layers(
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
+    colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
+        ones, as conic's .ply has them: file, display, linear [file]
     allow_outside: a glTF may name buffers and pictures outside of its folder
     color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value
         in the file by its name; auto: rgb, or else intensity [auto]
@@ -1100,6 +1121,7 @@ def mls(
     memory: Optional[Union[int, str]] = None,
     isa: Optional[Literal["auto", "scalar", "sse2", "avx2", "avx512", "neon"]] = None,
     columns: Optional[Union[str, float, Sequence[float]]] = None,
+    colors: Optional[Literal["file", "display", "linear"]] = None,
     allow_outside: Optional[bool] = None,
 ) -> Scene:
     """Cleans ("project"), thins ("thin") or densifies ("densify") points by the surface that they mean.
@@ -1126,6 +1148,8 @@ def mls(
     memory: project: work cell by cell in so much memory, the rest beside the output
     isa: auto, scalar, sse2, avx2, avx512, neon; changes no bit [auto]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
+    colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
+        ones, as conic's .ply has them: file, display, linear [file]
     allow_outside: a glTF may name buffers and pictures outside of its folder
     threads: how many threads compute; the results never depend on it [0: all]
     """
@@ -1144,6 +1168,7 @@ def csg(
     k: Optional[int] = None,
     cutoff: Optional[float] = None,
     columns: Optional[Union[str, float, Sequence[float]]] = None,
+    colors: Optional[Literal["file", "display", "linear"]] = None,
     allow_outside: Optional[bool] = None,
 ) -> Scene:
     """Joins two solids (`union=True`), intersects them (`intersection`), or takes one from the other (`difference`).
@@ -1157,6 +1182,8 @@ def csg(
     k: neighbours that a raw point's size is estimated from, 6 to 64 [20]
     cutoff: the --cutoff of the pictures to come [1.5]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
+    colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
+        ones, as conic's .ply has them: file, display, linear [file]
     allow_outside: a glTF may name buffers and pictures outside of its folder
     threads: how many threads compute; the results never depend on it [0: all]
     """
@@ -1176,6 +1203,7 @@ def hybrid(
     sampling: Optional[Literal["blue", "box"]] = None,
     texture: Optional[PathLike] = None,
     max_texture: Optional[int] = None,
+    colors: Optional[Literal["file", "display", "linear"]] = None,
     allow_outside: Optional[bool] = None,
     smooth: Optional[bool] = None,
     crease: Optional[float] = None,
@@ -1202,6 +1230,8 @@ def hybrid(
     sampling: blue (blue noise, ellipses) or box (three grids, circles: for comparison) [blue]
     texture: the picture on the mesh's surface [as its materials say]
     max_texture: what textures may take in memory together; one more is refused before it is decoded [4096]
+    colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
+        ones, as conic's .ply has them: file, display, linear [file]
     allow_outside: a glTF may name buffers and pictures outside of its folder
     smooth: triangles look smooth everywhere: each vertex gets the mean normal of its faces
     crease: triangles without normals look smooth over edges up to this angle, in degrees; 0: every face is flat
@@ -1306,6 +1336,7 @@ def gradient(
     planes: Optional[Union[str, float, Sequence[float]]] = None,
     k: Optional[int] = None,
     columns: Optional[Union[str, float, Sequence[float]]] = None,
+    colors: Optional[Literal["file", "display", "linear"]] = None,
     tile: Optional[int] = None,
     device: Optional[Union[str, float, Sequence[float]]] = None,
     plain: Optional[bool] = None,
@@ -1402,6 +1433,8 @@ def gradient(
         picked by its name in Nuke or Blender [rgba,Z]
     k: how many neighbours a raw point's size and normal are estimated from, 6 to 64 [20]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
+    colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
+        ones, as conic's .ply has them: file, display, linear [file]
     tile: the edge, in pixels, of the squares that a picture is drawn in: 8, 16, 32 or 64; changes no bit of it
         [64]
     device: what draws: cpu, opencl (the first device) or opencl:P.D (see conic devices), which :gather makes go

@@ -86,7 +86,9 @@ class Model(ctypes.Structure):
         ("fields", c_void_p),
         ("n_fields", c_size_t),
         ("follows_cutoff", c_uint64),
-        ("reserved", c_uint64 * 2),
+        ("colors_are", c_uint32),
+        ("reserved_word", c_uint32),
+        ("reserved", c_uint64 * 1),
     ]
 
 
@@ -496,6 +498,7 @@ class Reading(ctypes.Structure):
         ("where", c_char_p),
         ("keeps_alpha", c_int),
         ("cache", c_char_p),
+        ("colors_are", c_int),
     ]
 
 

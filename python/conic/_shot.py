@@ -339,7 +339,8 @@ class Reading(_Struct):
     """How the scene's files become what is drawn: conic_source_options."""
 
     _layout: ClassVar[Any] = layouts.Reading
-    _words: ClassVar[Dict[str, Sequence[str]]] = {"as": ("points", "mesh", "hybrid", "patches", "auto")}
+    _words: ClassVar[Dict[str, Sequence[str]]] = {"as": ("points", "mesh", "hybrid", "patches", "auto"),
+                                                 "colors_are": ("file", "display", "linear")}
     as_: str = field(default="auto", metadata={"member": "as"})
     is_whole: bool = False
     cutoff: float = 1.5
@@ -358,6 +359,7 @@ class Reading(_Struct):
     where: Optional[str] = None
     keeps_alpha: bool = False
     cache: Optional[str] = None
+    colors_are: str = "file"
 
     def _put(self, struct: Any, alive: List[Any]) -> None:
         super()._put(struct, alive)

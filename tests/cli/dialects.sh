@@ -8,8 +8,8 @@ source "$1/tests/support/program.bash"
 
 # color FILE R G B: the middle of the square, as linear values of these codes
 color() {
-  local file=$1
-  run_as_typed 0 render "$file" -o a.pfm --size 9x9 --shade none --samples 1 --background 0,0,0 --up y --azimuth 0 \
+  local file=$1 # and options
+  run_as_typed 0 render $file -o a.pfm --size 9x9 --shade none --samples 1 --background 0,0,0 --up y --azimuth 0 \
     --elevation 0 --projection orthographic -q
   perl -e 'local $/; open F, "<", "a.pfm"; my @v = unpack "f<*", substr(<F>, -9 * 9 * 12);
     for (0 .. 2) { my $s = $ARGV[$_] / 255; my $l = $s <= 0.04045 ? $s / 12.92 : (($s + 0.055) / 1.055) ** 2.4;
@@ -48,6 +48,36 @@ vertices() { # BEHIND EACH
 { echo 'OFF 4 1 0 # by hand'; vertices '100 150 200'; echo 4 0 1 2 3; } > unsaid.off
 { echo OFF; echo 4 1 0; vertices ''; echo 4 0 1 2 3 100 150 200; } > faces.off
 { echo OFF; echo 4 1 0; vertices ''; echo 4 0 1 2 3 0.39216 0.58824 0.78431; } > fractions_of_faces.off
+shares='0.39216 0.58824 0.78431'
+linear='0.12744 0.30499 0.57758'
+for type in float double; do
+  { ply_header $type ''; vertices "$shares"; echo 4 0 1 2 3; } > $type.ply
+  { ply_header $type ''; vertices '100 150 200'; echo 4 0 1 2 3; } > codes_in_$type.ply
+  { ply_header '' $type; vertices ''; echo "4 0 1 2 3 $shares"; } > $type.of.faces.ply
+  { ply_header $type ''; vertices "$linear"; echo 4 0 1 2 3; } > linear.$type.ply
+done
+{ ply_header '' ushort; vertices ''; echo 4 0 1 2 3 100 150 200; } > bytes_in_shorts.of.faces.ply
+{ ply_header '' ushort; vertices ''; echo 4 0 1 2 3 25700 38550 51400; } > shorts.of.faces.ply
+sed 's/^element vertex/comment conic 0.6.0\n&/' linear.float.ply > own.ply
+{ for place in "${places[@]}"; do echo "v $place $shares"; done; echo f 1 2 3 4; } > shares.obj
+{ for place in "${places[@]}"; do echo "v $place 100 150 200"; done; echo f 1 2 3 4; } > codes.obj
+{ for place in "${places[@]}"; do echo "v $place $linear"; done; echo f 1 2 3 4; } > linear.obj
+for file in *float.ply *double.ply *.of.faces.ply own.ply shares.obj codes.obj; do
+  [[ $file = linear* ]] || color $file 100 150 200
+done
+for file in linear.float.ply linear.double.ply linear.obj; do
+  color "$file --colors linear" 100 150 200
+  run 0 prepare $file --colors linear -o own.ply
+  color own.ply 100 150 200
+done
+run 0 prepare linear.float.ply -o own.ply
+color own.ply 32 78 147
+run 2 render shorts.ply --colors linear -o a.pfm
+grep -q 'acts on colours that are fractions of 1' err || fail "--colors on codes: $(cat err)"
+for file in bytes_in_shorts bytes; do # what can be read once only
+  "$conic" layer - -o $file.lpc < $file.ply 2> err || fail "$(cat err)"
+done
+cmp -s bytes_in_shorts.lpc bytes.lpc || fail 'shorts are other colours from a pipe'
 for file in bytes.ply bytes_in_shorts.ply shorts.ply faces.ply both.ply codes.off fractions.off unsaid.off faces.off \
   fractions_of_faces.off; do
   color $file 100 150 200

@@ -95,6 +95,7 @@ CASES = {
                                              "cryptomatte")],
     "-k": [["-k", "6"]],
     "--columns": [["--columns", "y,x,z"]],
+    "--colors": [["--colors", "linear"]],
     "--tile": [["--tile", "8"]],
     "--device": [["--device", "cpu"], ["--device", "cpu:inexact"]],
     "--plain": [["--plain"]],
