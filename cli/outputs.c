@@ -77,13 +77,18 @@ int cli_check_outputs(const cli_session *session, const char *const *paths, int 
   return check_folders(session, paths, n_paths);
 }
 
+static const char *stands_for(const char *path, const char *standard) {
+  return strcmp(path, "-") == 0 ? standard : path;
+}
+
 int cli_check_inputs_stay(const cli_session *session, const char *const *inputs, int n_inputs,
                           const char *const *outputs, int n_outputs) {
   for (int i = 0; i < n_inputs; i++) {
     for (int j = 0; j <= n_outputs; j++) {
       const char *output = j < n_outputs ? outputs[j] : session->json_path;
-      if (inputs[i] && output && strcmp(output, "-") != 0 && is_same_file(inputs[i], output))
-        return cli_usage("%s: %s is an input, and would be written over", session->command, output);
+      if (inputs[i] && output && is_same_file(stands_for(inputs[i], "/dev/stdin"), stands_for(output, "/dev/stdout")))
+        return cli_usage("%s: %s is an input, and would be written over", session->command,
+                         stands_for(output, "standard output"));
     }
   }
   return CLI_DONE;

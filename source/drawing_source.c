@@ -13,6 +13,7 @@
 #include "source/lean_drawing.h"
 #include "source/mesh_input.h"
 #include "source/moved_drawing.h"
+#include "source/reach.h"
 #include "source/source_kind.h"
 
 typedef struct drawing_source {
@@ -156,16 +157,15 @@ static conic_status read_model(drawing_source *d, const char *path, const conic_
                     (model.kind == CONIC_MODEL_XYZ ? CONIC_TRAIT_TEXT : 0) |
                     (conic_model_has_fractions(&model) ? CONIC_TRAIT_FRACTIONS : 0);
   memcpy(up, model.up, sizeof model.up);
-  if (conic_splats_bounds(&model.points, low, high) == 0)
-    status = conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot be drawn: %s", path,
-                        model.points.count ? "no point is finite"
-                        : options->where   ? "no point passes --where"
-                                           : "it holds no points");
-  else if (options->as == CONIC_AS_AUTO)
-    status = take_as_fits(d, path, options, &model);
-  else if (reading.keeps_faces && model.n_triangles)
-    status = take_triangles(d, path, options, &model);
+  if (!model.points.count && options->where)
+    status = conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot be drawn: no point passes --where", path);
   else
+    status = conic_leave_far_points(context, path, &model.points, low, high);
+  if (status == CONIC_OK && options->as == CONIC_AS_AUTO)
+    status = take_as_fits(d, path, options, &model);
+  else if (status == CONIC_OK && reading.keeps_faces && model.n_triangles)
+    status = take_triangles(d, path, options, &model);
+  else if (status == CONIC_OK)
     status = take_points(d, path, options, &model);
   conic_model_release(context, &model);
   d->base.scale.estimate_seconds += conic_seconds_now() - start;

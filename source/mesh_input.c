@@ -68,15 +68,11 @@ static conic_status take_hybrid_points(conic_context *context, const char *path,
   estimate.finds_dots = 1;
   if (reading->n_neighbours)
     estimate.n_neighbours = reading->n_neighbours;
-  if (conic_splats_bounds(&model->points, low, high) == 0)
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot be drawn: %s", path,
-                      model->points.count ? "no point is finite" : "it holds no points");
-  if (!conic_is_in_reach(low, high))
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot be drawn: %s", path,
-                      conic_why_out_of_reach(&model->points));
   if (reading->texture_path)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: there are no faces for the texture to lie on", path);
-  conic_status status = conic_model_to_splats(context, &estimate, model, &repairs);
+  conic_status status = conic_leave_far_points(context, path, &model->points, low, high);
+  if (status == CONIC_OK)
+    status = conic_model_to_splats(context, &estimate, model, &repairs);
   if (status != CONIC_OK)
     return status;
   conic_repairs_log(context, path, &repairs);

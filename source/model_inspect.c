@@ -114,7 +114,6 @@ static size_t count_wrong(const conic_splats *points, float *const vector[3], va
 }
 
 static void tell_defects(const conic_splats *points, conic_facts *facts) {
-  const char *why = conic_why_out_of_reach(points);
   size_t axes = 0, opacities = 0, clips = 0;
   for (size_t i = 0; points->tangent_u[0] && i < points->count; i++)
     axes += !is_direction(points->tangent_u, i) || !is_direction(points->tangent_v, i);
@@ -124,8 +123,6 @@ static void tell_defects(const conic_splats *points, conic_facts *facts) {
     for (int k = 0; k < points->clips[i].n_lines; k++)
       clips += !conic_clip_is_line(points->clips[i].lines[k]);
   CONIC_ADD_FACTS(facts, CONIC_OBJECT("defects"));
-  if (why)
-    CONIC_ADD_FACTS(facts, conic_fact_text(CONIC_FACT_FAULT, "extent", "%s", why));
   CONIC_ADD_FACTS(
       facts,
       CONIC_DEFECT("positions", count_wrong(points, points->position, is_finite_vector),
@@ -188,7 +185,8 @@ conic_status conic_model_inspect(conic_context *context, const char *path, int i
     CONIC_ADD_FACTS(facts, CONIC_COUNT("triangles", model.n_triangles),
                     CONIC_LINE("triangles", "%zu", model.n_triangles));
   tell_fields(conic_splats_fields(&model.points), facts);
-  if (conic_splats_bounds(&model.points, low, high)) {
+  if (conic_splats_bounds(&model.points, low, high) &&
+      conic_leave_far_points(context, path, &model.points, low, high) == CONIC_OK) {
     conic_facts_add_bounds(facts, low, high);
     tell_up(context, path, &model, facts);
   }

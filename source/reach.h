@@ -11,10 +11,7 @@ static inline int conic_is_in_reach(const double low[3], const double high[3]) {
   return 1;
 }
 
-/* Why no camera can be placed before the points, in words; null where one can. */
-static inline const char *conic_why_out_of_reach(const conic_splats *points) {
-  double low[3], high[3];
-  if (conic_splats_bounds(points, low, high) == 0)
-    return points->count ? "no point is finite" : "it holds no points";
-  return conic_is_in_reach(low, high) ? NULL : "a point is farther out than 1e20";
-}
+/* Points farther out than 1e20 become points that are not finite, with a warning: a reader that met a stray number has
+ * made them, and no camera would hold them and the rest. Finds the box of the others. Errors: INPUT (none is left). */
+conic_status conic_leave_far_points(conic_context *context, const char *name, conic_splats *points, double low[3],
+                                    double high[3]);

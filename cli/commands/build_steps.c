@@ -91,12 +91,9 @@ int cli_build_parse(cli_build *build, const cli_option *options, int n_options, 
   return exit_code == CLI_DONE ? cli_build_check(build, &build->input, 1, ending) : exit_code;
 }
 
-conic_status cli_build_check_reach(const cli_build *build, const conic_splats *points) {
+conic_status cli_build_leave_far(const cli_build *build, conic_splats *points) {
   double low[3], high[3];
-  if (conic_splats_bounds(points, low, high) == 0 || conic_is_in_reach(low, high))
-    return CONIC_OK;
-  return conic_fail(build->session->context, CONIC_ERROR_INPUT, "%s: cannot be drawn: %s", build->input,
-                    conic_why_out_of_reach(points));
+  return conic_leave_far_points(build->session->context, build->input, points, low, high);
 }
 
 void cli_build_hint_faces(const cli_build *build, const conic_model *model) {

@@ -56,8 +56,8 @@ int cli_build_take_paths(cli_build *build, const char *input, const char *ending
 /* Checks the output against any number of inputs. Returns CLI_DONE or, after a message, the exit code. */
 int cli_build_check(const cli_build *build, const char *const *inputs, int n_inputs, const char *ending);
 
-/* Refuses points that are too far out to be drawn, with conic render's message. Errors: INPUT. */
-conic_status cli_build_check_reach(const cli_build *build, const conic_splats *points);
+/* conic_leave_far_points of the input. Errors: INPUT. */
+conic_status cli_build_leave_far(const cli_build *build, conic_splats *points);
 
 /* Warns where the input is a mesh, because the output only holds splats for its vertices. */
 void cli_build_hint_faces(const cli_build *build, const conic_model *model);

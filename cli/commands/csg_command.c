@@ -32,7 +32,7 @@ static conic_status read_solids(csg_job *job) {
     job->base.input = job->inputs[i];
     status = cli_points_read(context, job->inputs[i], &options, &job->models[i]);
     if (status == CONIC_OK)
-      status = cli_build_check_reach(&job->base, &job->models[i].points);
+      status = cli_build_leave_far(&job->base, &job->models[i].points);
   }
   return status == CONIC_OK
              ? cli_build_know(&job->base, cli_build_facts(&job->models[0]) | cli_build_facts(&job->models[1]))

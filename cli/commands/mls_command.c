@@ -68,20 +68,14 @@ static conic_status read_points(mls_job *job) {
   if (job->action != MLS_DENSIFY) /* densifying needs them: they say where the surface is */
     cli_build_hint_faces(&job->base, &job->model);
   conic_splats *points = &job->model.points;
-  double low[3], high[3];
   job->n_in = points->count;
-  if (conic_splats_bounds(points, low, high) == 0) {
-    cli_error(CLI_INPUT, "%s: %s", job->base.input, points->count ? "no point is finite" : "it holds no points");
-    return CONIC_ERROR_INPUT;
-  }
-  if (!(conic_splats_fields(points) & (CONIC_SPLATS_NORMALS | CONIC_SPLATS_TANGENTS))) {
+  status = cli_build_leave_far(&job->base, points);
+  if (status == CONIC_OK && !(conic_splats_fields(points) & (CONIC_SPLATS_NORMALS | CONIC_SPLATS_TANGENTS))) {
     conic_estimate_options estimate;
     conic_estimate_options_init(&estimate);
     estimate.finds_dots = job->action == MLS_DENSIFY && !job->model.n_triangles;
     status = conic_model_to_splats(context, &estimate, &job->model, &job->repairs);
   }
-  if (status == CONIC_OK)
-    status = cli_build_check_reach(&job->base, points);
   if (status == CONIC_OK)
     status = find_unit(job);
   cli_build_end_stage(&job->base.stages[ESTIMATE], start);

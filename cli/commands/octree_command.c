@@ -2,7 +2,6 @@
 
 #include "cli/commands/build_coloring.h"
 #include "core/splats/repairs_log.h"
-#include "source/reach.h"
 
 typedef struct octree_job {
   cli_build base;
@@ -38,13 +37,9 @@ static conic_status build_from_model(octree_job *job) {
   }
   cli_build_hint_faces(&job->base, &model);
   job->n_in = model.points.count;
-  const char *why = conic_why_out_of_reach(&model.points);
-  if (why) {
-    cli_error(CLI_INPUT, "%s: cannot be drawn: %s", job->base.input, why);
-    conic_model_release(context, &model);
-    return CONIC_ERROR_INPUT;
-  }
-  status = conic_model_to_splats(context, &job->estimate, &model, &job->repairs);
+  status = cli_build_leave_far(&job->base, &model.points);
+  if (status == CONIC_OK)
+    status = conic_model_to_splats(context, &job->estimate, &model, &job->repairs);
   if (status == CONIC_OK)
     status = cli_coloring_apply(&job->base, &job->coloring, model.up, &model.points, NULL);
   start = cli_build_end_stage(&stages[ESTIMATE], start);

@@ -83,7 +83,7 @@ static conic_status read_model(prepare_job *job) {
                                        (job->has_count && job->count < job->n_in ? CLI_FACT(RAW) : 0)); /* sized anew */
   cli_build_hint_faces(&job->base, &job->model);
   if (status == CONIC_OK)
-    status = cli_build_check_reach(&job->base, &job->model.points);
+    status = cli_build_leave_far(&job->base, &job->model.points);
   return status;
 }
 

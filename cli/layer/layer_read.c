@@ -18,8 +18,6 @@ static conic_status append_colored(cli_layer_job *job, const conic_splats *batch
   if (!job->has_points)
     status = conic_layers_builder_agree(job->builder, batch, &job->has_colors);
   job->has_points = 1;
-  if (status == CONIC_OK)
-    status = cli_build_check_reach(&job->base, batch);
   if (status != CONIC_OK)
     return status;
   if (!batch->color[0] == !job->has_colors)

@@ -19,7 +19,7 @@ typedef struct conic_layers_access {
                              splats drawn from them. At least an eighth is for the last two; 8 × 8 samples need more on
                              top. What does not fit goes to a file without a name in $TMPDIR, $TEMP or /var/tmp */
   double connect_seconds; /* a server that is not reached within so many is asked again */
-  double stall_seconds;   /* a server that sends under 1 KiB/s for so long is asked again */
+  double stall_seconds;   /* a server that sends under 8 KiB/s for so long is asked again */
   int n_retries;          /* how often it is asked again, with growing pauses, before a cloud is given up */
   double pause_seconds;   /* the first pause */
   int n_connections;      /* at a time, 1 to 16 */

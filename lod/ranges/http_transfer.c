@@ -9,7 +9,7 @@
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 
-enum { LEAST_BYTES_PER_SECOND = 1024, MOST_REDIRECTS = 5 };
+enum { LEAST_BYTES_PER_SECOND = 8192, MOST_REDIRECTS = 5 };
 
 const struct conic_http_fate conic_http_fates[] = {[CONIC_HTTP_SILENCE] = {CONIC_ERROR_IO, INT_MAX},
                                                    [CONIC_HTTP_WRONG] = {CONIC_ERROR_INPUT, 1},

@@ -11,7 +11,7 @@ typedef struct conic_ranges conic_ranges;
 
 typedef struct conic_ranges_options {
   double connect_seconds;    /* a server that is not reached within these is tried again */
-  double stall_seconds;      /* so is one that sends under 1 KiB/s for so long */
+  double stall_seconds;      /* so is one that sends under 8 KiB/s for so long */
   int n_retries;             /* tries after the first, each after a longer pause, before a range is given up */
   double pause_seconds;      /* the first pause; each is twice the one before */
   int n_connections;         /* at a time */

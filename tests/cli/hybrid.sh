@@ -40,7 +40,7 @@ run 0 hybrid hill.ply -o whole.chy
 run 0 hybrid hill.ply --memory 200 -o parts.chy --json parts.json
 cmp -s whole.chy parts.chy || fail "--memory makes another file of one cell"
 [[ $(value triangles_in parts.json) == 7200 && $(value bytes parts.json) == $(stat -c %s parts.chy) ]] || fail "counts"
-run 2 hybrid hill.ply --memory 9 -o x.chy
+run 4 hybrid hill.ply --memory 9 -o x.chy
 run 2 hybrid hill.ply --memory 200 --color-by height -o x.chy
 run 3 hybrid hill.obj --memory 200 -o x.chy
 [[ ! -e x.chy && -z $(find . -name '.conic*') ]] || fail "something is left behind"

@@ -152,10 +152,10 @@ printf '0\n' > none.pts
 for memory in "" "--memory 100"; do
   # shellcheck disable=SC2086
   run 3 mls project nan.xyz -o x.ply --h 0.1 $memory
-  grep -q '^conic: error: nan.xyz: no point is finite$' err || fail "points that are not finite: $(cat err)"
+  grep -q '^conic: error: nan.xyz: .*no point is finite$' err || fail "points that are not finite: $(cat err)"
   # shellcheck disable=SC2086
   run 3 mls project none.pts -o x.ply --h 0.1 $memory
-  grep -q '^conic: error: none.pts: it holds no points$' err || fail "no points: $(cat err)"
+  grep -q '^conic: error: none.pts: .*it holds no points$' err || fail "no points: $(cat err)"
 done
 [[ ! -e x.ply ]] || fail "a file of a run that failed"
 

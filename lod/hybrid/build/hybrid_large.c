@@ -110,7 +110,7 @@ static conic_status check_memory(const large_building *b, size_t n_faces) {
   uint64_t needed = OTHER_BYTES + (uint64_t)BYTES_A_FACE * n_faces;
   return needed <= b->streaming.memory_bytes
              ? CONIC_OK
-             : conic_fail(b->context, CONIC_ERROR_ARGUMENT, "building takes %llu MiB of memory, and may take %llu",
+             : conic_fail(b->context, CONIC_ERROR_MEMORY, "building takes %llu MiB of memory, and may take %llu",
                           (unsigned long long)(needed >> 20) + 1,
                           (unsigned long long)(b->streaming.memory_bytes >> 20));
 }

@@ -186,9 +186,12 @@ conic_status conic_layers_builder_agree(conic_layers_builder *builder, const con
   return status;
 }
 
+/* Steps of more sampling distances than this are warned of: pictures show them. */
+static const double LONG_STEP = 4.0;
+
 /* Lays the grid evenly about the box, in as many steps of the quantum as that takes. Where there would be too many, the
- * steps are larger. */
-static void lay_grid(conic_layers_builder *builder, double quantum) {
+ * steps are larger. Errors: ARGUMENT (the cloud is smaller than a step). */
+static conic_status lay_grid(conic_layers_builder *builder, double quantum) {
   const conic_layers_facts *facts = &builder->raws.payload.facts;
   conic_layers_header *header = &builder->header;
   double extent = 0.0, magnitude = 0.0;
@@ -198,6 +201,13 @@ static void lay_grid(conic_layers_builder *builder, double quantum) {
     magnitude = fabs(facts->high[axis]) > magnitude ? fabs(facts->high[axis]) : magnitude;
     magnitude = fabs(facts->low[axis]) > magnitude ? fabs(facts->low[axis]) : magnitude;
   }
+  if (quantum > extent && extent > 0.0)
+    return conic_fail(builder->context, CONIC_ERROR_ARGUMENT,
+                      "%s: not written: positions would be rounded to steps of %g, and all lie within %g",
+                      builder->path, quantum, extent);
+  if (quantum > LONG_STEP * header->spacing && header->spacing > 0.0)
+    conic_log(builder->context, CONIC_LOG_WARNING, "%s: positions are rounded to steps of %g, samples lie %g apart",
+              builder->path, quantum, header->spacing);
   double least = extent * (1.0 + 0x1p-20) * 0x1p-21, finest = magnitude * 0x1p-45;
   header->quantum = quantum > least ? quantum : least;
   header->quantum = header->quantum > finest ? header->quantum : finest;
@@ -216,6 +226,7 @@ static void lay_grid(conic_layers_builder *builder, double quantum) {
     header->high[axis] = facts->high[axis];
     header->origin[axis] = facts->low[axis] - 0.5 * (edge - (facts->high[axis] - facts->low[axis]));
   }
+  return CONIC_OK;
 }
 
 /* Takes the grid of a file that there is, and adds as many whole steps below it as the box takes. */
@@ -250,10 +261,7 @@ static conic_status make_plan(conic_layers_builder *builder) {
     return status;
   int is_unoriented = builder->options.is_unoriented || raws->payload.facts.n_unseen > 0;
   double unit = builder->options.quantum_in_spacings ? header->spacing : 1.0;
-  if (builder->options.has_corner)
-    status = continue_grid(builder);
-  else
-    lay_grid(builder, builder->options.quantum * unit);
+  status = builder->options.has_corner ? continue_grid(builder) : lay_grid(builder, builder->options.quantum * unit);
   if (status != CONIC_OK)
     return status;
   if (!(header->spacing > 0.0)) /* all coincide: something that can be seen */
