@@ -46,8 +46,9 @@ static const double base_share = 0.03, base_ratio = 2.0, standing_part = 0.8, ba
  * than the second, and several times what is so along another axis, where they are not. */
 static const double alike = 0.02, uneven_share = 0.08, uneven_ratio = 2.5;
 
-/* A plate is thinner than this part of its extent, and what lies along z is longer than this many times its width. */
-static const double plate_part = 0.15, lying_ratio = 1.7;
+/* Shares of the area of what lies that face along the axis, roughly and exactly. And what is longer along z than this
+ * many times its width lies along it. */
+static const double facing_share = 0.5, exact_share = 0.25, lying_ratio = 1.7;
 
 /* Patches of surface: their places, and their normals by area. */
 typedef struct samples {
@@ -143,14 +144,8 @@ static void find_extent(const samples *s, double low[3], double high[3]) {
   }
 }
 
-static conic_up_basis look_at_box(const double extent[3], int is_mesh) {
-  double across = extent[0] < extent[1] ? extent[0] : extent[1];
-  double around = extent[0] < extent[2] ? extent[0] : extent[2];
-  if (is_mesh && extent[1] < planar_part * around)
-    return CONIC_UP_FACING;
-  if (is_mesh && extent[2] < planar_part * across)
-    return CONIC_UP_HABIT;
-  return extent[2] < flat_part * across ? CONIC_UP_FLAT : CONIC_UP_HABIT;
+static double smaller(double a, double b) {
+  return a < b ? a : b;
 }
 
 /* Whether the mean normal is vertical: +z and +y are the first two answers; 0: neither. */
@@ -233,15 +228,18 @@ static int measure_shape(const samples *s, presence *of, shape *m) {
   return 1;
 }
 
-static double smaller(double a, double b) {
-  return a < b ? a : b;
-}
-
-/* What is as flat as what lies, but stands: left and right of it are alike, front and back less so, and top and bottom
- * least. It is no plate, which is thinner. `deep`: the axis along which it is flat, 1 or 2. */
-static int is_figure(const shape *m, int deep) {
-  return m->uneven[0] < alike && m->uneven[3 - deep] > m->uneven[deep] + alike &&
-         m->extent[deep] > plate_part * m->greatest;
+/* Whether it is flat along an axis, and most of a mesh faces along it, or much of it exactly. A figure with its arms
+ * out is as flat, and round. */
+static int is_lying(const samples *s, const shape *m, int axis, int is_mesh) {
+  double facing = 0.0, exact = 0.0;
+  if (!(m->extent[axis] < flat_part * smaller(m->extent[0], m->extent[3 - axis])))
+    return 0;
+  for (size_t i = 0; i < s->count; i++) {
+    double area = conic_length(s->area[i]), along = fabs(s->area[i][axis]);
+    facing += along > 0.8 * area ? area : 0.0;
+    exact += along > 0.97 * area ? area : 0.0;
+  }
+  return !is_mesh || facing > facing_share * m->total || exact > exact_share * m->total;
 }
 
 /* Whether more of it lacks its mirror image along z than along y; and it is rather tall than deep, as what stands is,
@@ -253,19 +251,17 @@ static int is_even(const shape *m, int is_base) {
 }
 
 static conic_up_basis judge_shape(const samples *s, const shape *m, int is_mesh) {
-  conic_up_basis flat = look_at_box(m->extent, is_mesh);
-  if (flat == CONIC_UP_FACING || (is_mesh && m->extent[2] < planar_part * m->greatest))
-    return flat;
+  if (is_mesh && m->extent[1] < planar_part * smaller(m->extent[0], m->extent[2]))
+    return CONIC_UP_FACING;
   int open = opens_along(m->mean);
   int is_half = is_mesh && m->uneven[0] < alike && m->uneven[1] >= alike; /* as a face, which is open behind */
-  if (open == 1 || (open && is_half))
+  if ((is_mesh && m->extent[2] < planar_part * m->greatest) || open == 1 || (open && is_half) ||
+      is_lying(s, m, 1, is_mesh))
     return CONIC_UP_HABIT;
-  if (flat == CONIC_UP_FLAT)
-    return !open && is_figure(m, 2) ? CONIC_UP_HABIT : CONIC_UP_FLAT;
+  if (is_lying(s, m, 2, is_mesh))
+    return CONIC_UP_FLAT;
   if (open)
     return CONIC_UP_OPEN;
-  if (m->extent[1] < flat_part * smaller(m->extent[0], m->extent[2]) && !is_figure(m, 1))
-    return CONIC_UP_HABIT; /* it lies, with y up */
   double base = share_at(s, m, 2, m->low[2]);
   int is_base = base > base_share && base > base_ratio * share_at(s, m, 2, m->high[2]);
   if (is_even(m, is_base))

@@ -68,17 +68,11 @@ static void at_leaning_pear(double s, double t, double place[3]) {
   place[1] += 0.15 * place[2] * place[2];
 }
 
-/* As wide as it is tall, and as flat as what lies. */
-static void at_figure(double s, double t, double place[3]) {
+/* A plate, rounded on top. */
+static void at_plate(double s, double t, double place[3]) {
   at_pear(s, t, place);
   place[0] *= 1.7;
-  place[1] *= 0.5;
-}
-
-/* A plate of that outline. */
-static void at_plate(double s, double t, double place[3]) {
-  at_figure(s, t, place);
-  place[1] *= 0.2;
+  place[1] *= 0.1;
 }
 
 /* Long, without a base. */
@@ -101,6 +95,18 @@ static void at_ball(double s, double t, double place[3]) {
   place[2] = sin(tilt);
 }
 
+/* A body with its head, arms and legs, part by part: as wide as it is tall, and as flat as what lies. */
+static int i_part;
+
+static void at_figure(double s, double t, double place[3]) {
+  static const double middles[5][3] = {{0, 0, 0.2}, {-0.8, 0, 0.5}, {0.8, 0, 0.5}, {-0.3, 0, -0.9}, {0.3, 0, -0.9}};
+  static const double sizes[5][3] = {
+      {0.4, 0.3, 1}, {0.6, 0.15, 0.15}, {0.6, 0.15, 0.15}, {0.2, 0.2, 0.6}, {0.2, 0.2, 0.6}};
+  at_ball(s, t, place);
+  for (int axis = 0; axis < 3; axis++)
+    place[axis] = middles[i_part % 5][axis] + sizes[i_part % 5][axis] * place[axis];
+}
+
 /* `is_y_up`: the same shape with what was z in y. */
 static conic_up_basis stand(surface_at *at, int is_y_up) {
   conic_context *context = check_context(2);
@@ -108,9 +114,12 @@ static conic_up_basis stand(surface_at *at, int is_y_up) {
   conic_splats splats;
   conic_source *source;
   memset(&splats, 0, sizeof splats);
-  CHECK_OK(conic_triangles_allocate(context, 2 * SIDE * SIDE, (SIDE + 1) * (SIDE + 1), 0, &triangles));
+  const size_t n_parts = at == at_figure ? 5 : 1;
+  CHECK_OK(
+      conic_triangles_allocate(context, n_parts * 2 * SIDE * SIDE, n_parts * (SIDE + 1) * (SIDE + 1), 0, &triangles));
   triangles.count = triangles.n_vertices = 0;
-  add_grid(&triangles, at);
+  for (size_t i = 0; i < n_parts; i++, i_part++)
+    add_grid(&triangles, at);
   for (size_t i = 0; is_y_up && i < triangles.n_vertices; i++) {
     float z = triangles.position[2][i];
     triangles.position[2][i] = -triangles.position[1][i];
