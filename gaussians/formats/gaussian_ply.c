@@ -179,23 +179,13 @@ static void store_block(gaussian_reader *reader, size_t first, size_t n) {
 /* Of a pipe that says that much comes, arrays grow with what has really come. */
 static conic_status make_gaussian_room(gaussian_reader *reader, size_t used) {
   conic_context *context = reader->source->input->context;
-  conic_gaussians *gaussians = reader->gaussians;
-  float **columns[CONIC_MOST_GAUSSIAN_COLUMNS];
-  if (used + BLOCK <= reader->room || reader->room == gaussians->count)
+  const size_t count = reader->gaussians->count;
+  if (used + BLOCK <= reader->room || reader->room == count)
     return CONIC_OK;
-  size_t room = 2 * reader->room < gaussians->count ? 2 * reader->room : gaussians->count;
-  size_t n_harmonics = conic_harmonics_of_degree(gaussians->sh_degree);
-  conic_status status = CONIC_OK;
-  int n = conic_gaussians_list_columns(gaussians, columns);
-  for (int i = 0; status == CONIC_OK && i < n; i++)
-    status = conic_memory_grow(context, columns[i], used, room, sizeof(float));
+  reader->room = 2 * reader->room < count ? 2 * reader->room : count;
+  conic_status status = conic_gaussians_grow(context, reader->gaussians, used, reader->room);
   if (status == CONIC_OK && reader->filter)
-    status = conic_memory_grow(context, &reader->filter, used, room, sizeof(float));
-  if (status == CONIC_OK && gaussians->sh)
-    status = conic_memory_grow(context, &gaussians->sh, used * n_harmonics, room * n_harmonics, sizeof(float));
-  else if (status == CONIC_OK)
-    status = conic_memory_grow(context, &gaussians->sh_half, used * n_harmonics, room * n_harmonics, sizeof(uint16_t));
-  reader->room = room;
+    status = conic_memory_grow(context, &reader->filter, used, reader->room, sizeof(float));
   return status;
 }
 

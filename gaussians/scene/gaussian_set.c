@@ -61,6 +61,18 @@ conic_status conic_gaussians_allocate(conic_context *context, size_t count, int 
   return CONIC_OK;
 }
 
+conic_status conic_gaussians_grow(conic_context *context, conic_gaussians *gaussians, size_t used, size_t room) {
+  float **columns[CONIC_MOST_GAUSSIAN_COLUMNS];
+  const size_t n = conic_harmonics_of_degree(gaussians->sh_degree);
+  int n_columns = conic_gaussians_list_columns(gaussians, columns);
+  conic_status status = gaussians->sh
+                            ? conic_memory_grow(context, &gaussians->sh, used, room, n * sizeof(float))
+                            : conic_memory_grow(context, &gaussians->sh_half, used, room, n * sizeof(uint16_t));
+  for (int i = 0; status == CONIC_OK && i < n_columns; i++)
+    status = conic_memory_grow(context, columns[i], used, room, sizeof(float));
+  return status;
+}
+
 void conic_gaussians_release(conic_context *context, conic_gaussians *gaussians) {
   float **columns[CONIC_MOST_GAUSSIAN_COLUMNS];
   int n = list_all_columns(gaussians, CONIC_GAUSSIANS_SOURCE, columns);

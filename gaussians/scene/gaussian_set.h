@@ -46,6 +46,9 @@ void conic_gaussians_find_up(const conic_gaussians *gaussians, double up[3]);
 enum { CONIC_MOST_GAUSSIAN_COLUMNS = 15 };
 int conic_gaussians_list_columns(const conic_gaussians *gaussians, float **columns[CONIC_MOST_GAUSSIAN_COLUMNS]);
 
+/* Moves the arrays of `used` Gaussians into room for `room`. Errors: MEMORY. */
+conic_status conic_gaussians_grow(conic_context *context, conic_gaussians *gaussians, size_t used, size_t room);
+
 /* Turns a scene about the origin by a rotation, harmonics too. */
 void conic_gaussians_rotate(conic_context *context, conic_gaussians *gaussians, const double rotation[3][3]);
 
