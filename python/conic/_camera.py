@@ -12,7 +12,7 @@ import numpy
 
 from . import _layouts as layouts
 from ._arrays import as_numpy
-from ._library import context, library
+from ._library import context, library, text_bytes
 from .errors import ArgumentError
 
 PathLike = Union[str, "os.PathLike[str]"]
@@ -174,12 +174,12 @@ def list_cameras(path: PathLike, *, size: Optional[Sequence[int]] = None, view: 
     options = layouts.CamerasOptions(ctypes.sizeof(layouts.CamerasOptions), *(size or (0, 0)))
     read = layouts.Cameras()
     with context() as (made, check):
-        check(library.conic_cameras_read(made, os.fsencode(path), ctypes.byref(options), ctypes.byref(read)))
+        check(library.conic_cameras_read(made, text_bytes(path), ctypes.byref(options), ctypes.byref(read)))
         try:
             chosen = range(read.count)
             if view is not None:
                 index = ctypes.c_size_t()
-                check(library.conic_cameras_find(made, ctypes.byref(read), view.encode(), ctypes.byref(index)))
+                check(library.conic_cameras_find(made, ctypes.byref(read), text_bytes(view), ctypes.byref(index)))
                 chosen = range(index.value, index.value + 1)
             return [Camera(read.cameras[i], (read.names[i] or b"").decode(errors="replace")) for i in chosen]
         finally:

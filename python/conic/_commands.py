@@ -30,8 +30,13 @@ Options = Any
 _REPEATED = {"light", "o"}
 
 
-def _value(name: str, value: Any) -> Any:
+_DEEPEST = 8  # lists within lists: one that contains itself has no end
+
+
+def _value(name: str, value: Any, depth: int = 0) -> Any:
     """A whole number, a number, a tuple of numbers, or a word."""
+    if depth > _DEEPEST:
+        raise ArgumentError(f"{name}: it is nested too deeply")
     if isinstance(value, (str, os.PathLike)):
         return os.fspath(value)
     if isinstance(value, (bool, int, numpy.integer, numpy.bool_)):
@@ -40,8 +45,8 @@ def _value(name: str, value: Any) -> Any:
         return float(value)
     parts = as_numpy(value, name).tolist() if not isinstance(value, (list, tuple)) else value
     if not isinstance(parts, (list, tuple)):  # of an array without dimensions
-        return _value(name, parts)
-    found = [_value(name, part) for part in parts]
+        return _value(name, parts, depth + 1)
+    found = [_value(name, part, depth + 1) for part in parts]
     if 0 < len(found) <= layouts.MOST_NUMBERS and all(isinstance(part, (int, float)) for part in found):
         return tuple(float(part) for part in found)
     return ",".join(",".join(map(str, part)) if isinstance(part, tuple) else str(part) for part in found)
@@ -99,8 +104,10 @@ class _Call:
                 raise ArgumentError(f"{name}: that is for a shell; statistics are returned")
             self.add(name, value)
 
-    def input(self, scene: Any) -> None:
+    def input(self, scene: Any, depth: int = 0) -> None:
         """A scene, or several of them as one."""
+        if depth > _DEEPEST:
+            raise ArgumentError("the scenes are nested too deeply")
         if isinstance(scene, Scene):
             self.scene = scene
             self.inputs += scene.paths
@@ -110,7 +117,7 @@ class _Call:
             self.inputs.append(os.fspath(scene))
         elif isinstance(scene, (list, tuple)) and scene:
             for part in scene:
-                self.input(part)
+                self.input(part, depth + 1)
         else:
             raise ArgumentError(f"a scene is a path, or of conic.open, Splats, Mesh or Gaussians; not {type(scene)}")
 

@@ -20,7 +20,7 @@ from typing import Any, Callable, Iterator, List, Optional, Sequence, Tuple
 
 from . import _layouts as layouts
 from ._shelf import Shelf
-from .errors import Cancelled, ConicWarning, Error, error_of
+from .errors import ArgumentError, Cancelled, ConicWarning, Error, error_of
 
 _LOG_ERROR, _LOG_WARNING = 0, 1
 _log = logging.getLogger("conic")
@@ -533,11 +533,19 @@ class Frames:
 Pairs = Sequence[Tuple[str, Any]]
 
 
+def text_bytes(text: Any) -> bytes:
+    """A path or a word as the library takes it: its strings end at a NUL."""
+    encoded = os.fsencode(text)
+    if b"\0" in encoded:
+        raise ArgumentError(f"{str(text)[:80]!r}: a text has a NUL character")
+    return encoded
+
+
 def _values_of(pairs: Pairs) -> Any:
     """Options and what they are given, as the library takes them."""
     values = (layouts.Value * max(1, len(pairs)))()
     for value, (name, given) in zip(values, pairs):
-        value.name = name.encode()
+        value.name = text_bytes(name)
         if given is True:
             value.type = layouts.VALUE_SET
         elif isinstance(given, int) and -1 << 63 <= given < 1 << 63:
@@ -547,7 +555,7 @@ def _values_of(pairs: Pairs) -> Any:
             value.type, value.n_numbers = layouts.VALUE_NUMBERS, len(numbers)
             value.numbers[:len(numbers)] = numbers
         else:
-            value.type, value.text = layouts.VALUE_TEXT, os.fsencode(str(given))
+            value.type, value.text = layouts.VALUE_TEXT, text_bytes(str(given))
     return values
 
 
@@ -627,7 +635,7 @@ def run(arguments: Sequence[str], pairs: Pairs = (), *, loans: Sequence[Tuple[st
         progress: Any = None, frames: Optional[Frames] = None, kept: Optional[Kept] = None, keeps_source: bool = False,
         files: Sequence[str] = ()) -> Tuple[int, bytes]:
     """Runs a command of the program on inputs, with options by name."""
-    encoded = [os.fsencode(argument) for argument in arguments]
+    encoded = [text_bytes(argument) for argument in arguments]
     argv = (ctypes.c_char_p * (len(encoded) + 1))(*encoded, None)
     return _host(lambda host: library.cli_host_run(host, len(encoded), argv), _Ear([name for name, _ in loans], files),
                  progress, loans, kept, keeps_source, frames, pairs)
@@ -638,10 +646,10 @@ def draw(inputs: Sequence[str], shot: Any, reading: Any, image: Any, *, sky: Opt
          loans: Sequence[Tuple[str, ctypes.Structure]] = (), progress: Any = None, kept: Optional[Kept] = None,
          keeps_source: bool = False) -> Any:
     """Draws a shot into an image's planes; what came of it."""
-    encoded = [os.fsencode(name) for name in inputs]
+    encoded = [text_bytes(name) for name in inputs]
     names = (ctypes.c_char_p * (len(encoded) + 1))(*encoded, None)
     outcome = layouts.Outcome()
-    paths = [None if path is None else os.fsencode(path) for path in (sky, motion)]
+    paths = [None if path is None else text_bytes(path) for path in (sky, motion)]
     _host(lambda host: library.cli_host_draw(host, len(encoded), names, ctypes.byref(reading), ctypes.byref(shot),
                                              *paths, int(threads or 0), ctypes.byref(image), ctypes.byref(outcome)),
           _Ear([name for name, _ in loans]), progress, loans, kept, keeps_source, None, ())

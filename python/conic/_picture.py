@@ -13,7 +13,7 @@ import numpy
 
 from . import _layouts as layouts
 from ._camera import Camera, PathLike
-from ._library import PLANE_BY_NAME, TONES, context, library
+from ._library import PLANE_BY_NAME, TONES, context, library, text_bytes
 from .errors import ArgumentError
 
 
@@ -177,7 +177,7 @@ class Picture(Dict[str, Any]):
                                           has_mattes=False)
             image.shot = dataclasses.replace(self.shot, writing=writing).text()
         with context() as (made, check):
-            check(library.conic_image_write_as(made, os.fsencode(path), ctypes.byref(image), ctypes.byref(options)))
+            check(library.conic_image_write_as(made, text_bytes(path), ctypes.byref(image), ctypes.byref(options)))
 
     def to_uint8(self, *, backdrop: bool = True) -> numpy.ndarray:
         """(H, W, 3) sRGB codes to look at: over the greys that the program's PNG has behind, or over black."""

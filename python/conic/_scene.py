@@ -12,7 +12,7 @@ import numpy
 from . import _layouts as layouts
 from ._arrays import add_origin, as_floats, as_numpy, columns_of, side_by_side, split_origin
 from ._camera import PathLike
-from ._library import Kept, context, delaying_interrupts, library, read_facts, run
+from ._library import Kept, context, delaying_interrupts, library, read_facts, run, text_bytes
 from .errors import ArgumentError
 
 
@@ -181,7 +181,7 @@ class Gaussians(_InMemory):
         if not isinstance(frame, str) or sorted(_AXES.get(letter, "") for letter in frame) != ["x", "y", "z"]:
             raise ArgumentError(f"frame: {frame!r} is not understood; three letters say where x, y and z point: "
                                 "r or l, u or d, f or b")
-        struct.frame = frame.encode()
+        struct.frame = text_bytes(frame)
         struct.is_antialiased, struct.is_linear = int(antialiased), int(linear)
         self._struct = struct
 
@@ -257,7 +257,7 @@ class Scene:
         """The Gaussians of the file, as arrays."""
         read = layouts.Gaussians()
         with context() as (made, check):
-            check(library.conic_gaussians_read(made, os.fsencode(self.path), None, ctypes.byref(read)))
+            check(library.conic_gaussians_read(made, text_bytes(self.path), None, ctypes.byref(read)))
             try:
                 n_scales = 3 if read.scale[2] else 2
                 return Gaussians(
@@ -275,7 +275,7 @@ class Scene:
         """The points or splats of the file, as arrays; of a mesh its vertices. Clip lines are left out."""
         read = layouts.Model()
         with context() as (made, check):
-            check(library.conic_gaussians_read_model(made, os.fsencode(self.path), None, ctypes.byref(read)))
+            check(library.conic_gaussians_read_model(made, text_bytes(self.path), None, ctypes.byref(read)))
             try:
                 points, arrays = read.points, {}
                 for name in [field[0] for field in layouts.Strides._fields_]:

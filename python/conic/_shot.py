@@ -12,7 +12,7 @@ from typing import Any, Callable, ClassVar, Dict, List, Optional, Sequence, Tupl
 
 from . import _layouts as layouts
 from ._camera import Camera, PathLike
-from ._library import PLANE_BY_NAME, PLANES, TONES, context, library, look, words_of
+from ._library import PLANE_BY_NAME, PLANES, TONES, context, library, look, text_bytes, words_of
 from .errors import ArgumentError
 
 Triple = Tuple[float, float, float]
@@ -54,7 +54,7 @@ class _Struct:
         elif isinstance(value, (list, tuple)):
             _put_numbers(getattr(struct, name), value)
         elif isinstance(value, str):
-            setattr(struct, name, os.fsencode(value))
+            setattr(struct, name, text_bytes(value))
         elif isinstance(value, bool) or value is None:
             setattr(struct, name, int(value) if value is not None else None)
         else:
@@ -531,7 +531,7 @@ class Shot(_Struct):
     def open(cls, path: PathLike) -> "Shot":
         """The shot of a file, or of a picture that carries one: an EXR, a PNG or a TIFF. `inputs` says what it was
         drawn from; the scene that is drawn is the one that :func:`conic.render` is given."""
-        made = cls._parsed(lambda context, file: library.conic_shot_file_read(context, os.fsencode(path), file))
+        made = cls._parsed(lambda context, file: library.conic_shot_file_read(context, text_bytes(path), file))
         for known in made.inputs:  # pictures name them without their folders
             beside = os.path.join(os.path.dirname(os.fspath(path)), known.name)
             if known.role != "part" and not os.path.exists(known.name) and os.path.exists(beside):
@@ -553,7 +553,7 @@ class Shot(_Struct):
         alive: List[Any] = []
         file = self.complete()._file(alive)
         with context() as (made, check):
-            check(library.conic_shot_file_write(made, ctypes.byref(file), os.fsencode(path)))
+            check(library.conic_shot_file_write(made, ctypes.byref(file), text_bytes(path)))
 
     def key(self) -> str:
         """The program's "shot_key": however a picture was asked for, it has one. Reads the inputs, as `complete`."""

@@ -153,7 +153,7 @@ class Arrays(unittest.TestCase):
             options = {"as_": words[1]} if len(words) > 1 else {"smooth": bool(words)}
             with self.subTest(words=words):
                 picture = conic.render(conic.Mesh(corners, faces, colors), size=SIZE, **options)
-                self.assert_same(picture, hashes(self.path("cube.ply"), *WORDS, *words))
+                self.assert_same(picture, hashes(self.path("cube.ply"), "--colors", "linear", *WORDS, *words))
         with self.assertRaisesRegex(conic.ArgumentError, "faces: an index"):
             conic.Mesh(corners, faces + 1)
 

@@ -77,6 +77,16 @@ class Commands(unittest.TestCase):
             with self.assertRaises(conic.ArgumentError):
                 conic.render(self.splats, **words)
 
+    def test_arguments_that_have_no_end(self):
+        endless = []
+        endless.append(endless)
+        scene = self.path("torus.ply")
+        for call in (lambda: conic.render(endless), lambda: conic.render(scene, light=endless),
+                     lambda: conic.render("a\0" + scene), lambda: conic.render(scene, kernel="hat\0x"),
+                     lambda: conic.Camera.from_file("a\0b"), lambda: conic.info("a\0b")):
+            with self.assertRaises(conic.ArgumentError):
+                call()
+
     def test_cameras(self):
         drawn = conic.render(self.splats, size=SIZE)
         camera = conic.Camera.from_K(drawn.camera.viewmat[None], drawn.camera.K[None], *SIZE)
