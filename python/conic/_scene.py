@@ -149,15 +149,16 @@ class Gaussians(_InMemory):
     deviations; `opacities` (N,), 0 to 1; `sh` (N, K, 3), the harmonics of all degrees, K = 1, 4, 9, 16 or 25. The
     colour is max(0, ½ + Σ sh·Y). The library needs each component's numbers side by side, so that all but `sh`, and
     components that are handed over as N-arrays of their own, is copied. `frame` says where x, y and z point ("rdf":
-    right, down, forward)."""
+    right, down, forward); `up` is the direction up, where it is another than the frame's."""
 
     _kind = "gaussians"
 
     def __init__(self, means: Any, quats: Any, scales: Any, opacities: Any, sh: Any, *, frame: str = "rdf",
                  antialiased: bool = False, linear: bool = False,
-                 origin: Sequence[float] = (0.0, 0.0, 0.0)) -> None:
+                 origin: Sequence[float] = (0.0, 0.0, 0.0), up: Sequence[float] = (0.0, 0.0, 0.0)) -> None:
         super().__init__()
         struct = layouts.Gaussians()
+        struct.up[:] = [float(value) for value in up]
         means, first = split_origin(means, "means")
         struct.origin[:] = add_origin(origin, first)
         position = side_by_side(means, 3, None, "means")
@@ -267,7 +268,7 @@ class Scene:
                     _copy(read.opacity, read.count),
                     _copy(read.sh, read.count * (read.sh_degree + 1)**2 * 3).reshape(read.count, -1, 3),
                     frame=read.frame.decode(), antialiased=bool(read.is_antialiased), linear=bool(read.is_linear),
-                    origin=list(read.origin))
+                    origin=list(read.origin), up=list(read.up))
             finally:
                 library.conic_gaussians_release(made, ctypes.byref(read))
 
