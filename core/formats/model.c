@@ -127,7 +127,8 @@ conic_status conic_model_read_kind(conic_input *input, conic_model_kind kind, co
     model->colors_are = kind == CONIC_MODEL_GLTF || kind == CONIC_MODEL_GLB ? CONIC_COLORS_LINEAR
                         : model->points.color[0] || model->faces            ? CONIC_COLORS_CODES
                                                                             : CONIC_COLORS_NONE;
-  if (kind == CONIC_MODEL_LAS || kind == CONIC_MODEL_E57 || kind == CONIC_MODEL_PTX)
+  int is_pts = kind == CONIC_MODEL_XYZ && conic_file_has_ending(input->name, "pts");
+  if (kind == CONIC_MODEL_LAS || kind == CONIC_MODEL_E57 || kind == CONIC_MODEL_PTX || is_pts)
     model->up[2] = 1.0;
   model->kind = kind;
   return status == CONIC_OK ? conic_fields_check(input->context, input->name, options, model) : status;

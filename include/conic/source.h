@@ -104,7 +104,7 @@ CONIC_API void conic_source_close(conic_source *source);
 
 /* How the source's `up` was found. */
 typedef enum conic_up_basis {
-  CONIC_UP_HABIT = 0,  /* nothing tells: +y, and +z for points in text and .pcd */
+  CONIC_UP_HABIT = 0,  /* nothing tells: +y */
   CONIC_UP_KIND = 1,   /* the file, or its kind, says it */
   CONIC_UP_FLAT = 2,   /* it lies flat: +z */
   CONIC_UP_OPEN = 3,   /* its surface is open below: +z */
@@ -121,7 +121,7 @@ CONIC_API const char *conic_up_basis_reason(conic_up_basis basis);
 typedef struct conic_source_scale {
   unsigned abilities;             /* bits of conic_source_ability */
   double minimum[3], maximum[3];  /* box of the finite centres and corners */
-  double up[3];                   /* +y; +z where all files are surveys (LAS) */
+  double up[3];                   /* as up_basis says */
   double near_z, splat_length;    /* for conic_render_options */
   double epsilon;                 /* for conic_render_options, where the source has its own; else negative: automatic */
   double spacing;                 /* the median sample spacing where it is known; else 0: conic_source_spacing */
