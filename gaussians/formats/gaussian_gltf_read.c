@@ -139,27 +139,6 @@ static conic_status read_packed(gaussian_gltf_reader *reader, const conic_gltf_p
   return status == CONIC_OK ? conic_spz_read(&file, packed) : status;
 }
 
-/* What was unpacked, into the next Gaussians. */
-static void take_packed(gaussian_gltf_reader *reader, const conic_gaussians *packed) {
-  conic_gaussians *gaussians = reader->gaussians;
-  const size_t n = packed->count, first = reader->n_placed;
-  const size_t n_own = conic_harmonics_of_degree(packed->sh_degree);
-  for (int k = 0; k < 4; k++) {
-    memcpy(gaussians->rotation[k] + first, packed->rotation[k], n * sizeof(float));
-    memcpy((k < 3 ? gaussians->position[k] : gaussians->opacity) + first, k < 3 ? packed->position[k] : packed->opacity,
-           n * sizeof(float));
-    if (k < 3)
-      memcpy(gaussians->scale[k] + first, packed->scale[k], n * sizeof(float));
-  }
-  for (size_t i = 0; i < n; i++) {
-    float room[CONIC_MOST_HARMONICS];
-    const float *harmonics = conic_gaussians_harmonics(packed, i, room);
-    for (size_t k = 0; k < conic_harmonics_of_degree(gaussians->sh_degree); k++)
-      conic_gaussians_put_harmonic(gaussians, first + i, k, k < n_own ? harmonics[k] : 0.0f);
-  }
-  gaussians->is_antialiased |= packed->is_antialiased;
-}
-
 /* --- the nodes --- */
 
 /* What a node does, p → turn·p·scale + shift; 0 where it stretches or mirrors. */
@@ -263,7 +242,8 @@ static conic_status place_primitive(gaussian_gltf_reader *reader, const conic_gl
     if (primitive->spz_view == CONIC_GLTF_NONE)
       status = take_plain(reader, primitive, count);
     else
-      take_packed(reader, &packed);
+      conic_gaussians_put(&packed, reader->gaussians, reader->n_placed);
+    reader->gaussians->is_antialiased |= packed.is_antialiased;
     if (status == CONIC_OK)
       put_in_place(reader, &place, count);
   }

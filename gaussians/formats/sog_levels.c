@@ -101,22 +101,14 @@ static conic_status read_unit(const levels_reader *self, size_t i_file, conic_ga
 
 /* Adds a unit to the set, which took its degree and fields of the first. */
 static conic_status append_unit(levels_reader *self, const conic_gaussians *unit, conic_gaussians *set) {
-  float **from[CONIC_MOST_GAUSSIAN_COLUMNS], **to[CONIC_MOST_GAUSSIAN_COLUMNS];
-  const size_t used = set->count, n = conic_harmonics_of_degree(unit->sh_degree);
   if (unit->sh_degree != set->sh_degree || conic_gaussians_fields(unit) != conic_gaussians_fields(set))
     return conic_gaussian_bytes_wrong(self->file, 0, "its files are of several kinds");
-  conic_status status = conic_gaussians_grow(self->file->context, set, used, used + unit->count);
-  if (status != CONIC_OK)
-    return status;
-  set->count += unit->count;
-  conic_gaussians_list_columns(unit, from);
-  for (int i = conic_gaussians_list_columns(set, to) - 1; i >= 0; i--)
-    memcpy(*to[i] + used, *from[i], unit->count * sizeof(float));
-  if (unit->sh)
-    memcpy(set->sh + used * n, unit->sh, unit->count * n * sizeof(float));
-  else
-    memcpy(set->sh_half + used * n, unit->sh_half, unit->count * n * sizeof(uint16_t));
-  return CONIC_OK;
+  conic_status status = conic_gaussians_grow(self->file->context, set, set->count, set->count + unit->count);
+  if (status == CONIC_OK) {
+    conic_gaussians_put(unit, set, set->count);
+    set->count += unit->count;
+  }
+  return status;
 }
 
 conic_status conic_sog_levels_read(const conic_gaussian_bytes *file, conic_gaussians *gaussians) {

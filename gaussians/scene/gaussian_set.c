@@ -73,6 +73,19 @@ conic_status conic_gaussians_grow(conic_context *context, conic_gaussians *gauss
   return status;
 }
 
+void conic_gaussians_put(const conic_gaussians *from, conic_gaussians *to, size_t first) {
+  float **columns[CONIC_MOST_GAUSSIAN_COLUMNS], **own[CONIC_MOST_GAUSSIAN_COLUMNS], room[CONIC_MOST_HARMONICS];
+  const size_t n_from = conic_harmonics_of_degree(from->sh_degree), n = conic_harmonics_of_degree(to->sh_degree);
+  conic_gaussians_list_columns(from, columns);
+  for (int i = conic_gaussians_list_columns(to, own) - 1; i >= 0; i--)
+    memcpy(*own[i] + first, *columns[i], from->count * sizeof(float));
+  for (size_t i = 0; i < from->count; i++) {
+    const float *harmonics = conic_gaussians_harmonics(from, i, room);
+    for (size_t k = 0; k < n; k++)
+      conic_gaussians_put_harmonic(to, first + i, k, k < n_from ? harmonics[k] : 0.0f);
+  }
+}
+
 void conic_gaussians_release(conic_context *context, conic_gaussians *gaussians) {
   float **columns[CONIC_MOST_GAUSSIAN_COLUMNS];
   int n = list_all_columns(gaussians, CONIC_GAUSSIANS_SOURCE, columns);

@@ -49,6 +49,10 @@ int conic_gaussians_list_columns(const conic_gaussians *gaussians, float **colum
 /* Moves the arrays of `used` Gaussians into room for `room`. Errors: MEMORY. */
 conic_status conic_gaussians_grow(conic_context *context, conic_gaussians *gaussians, size_t used, size_t room);
 
+/* Copies all of `from` to places from `first` on, of a set that has as many scales, and no arrays that `from` lacks.
+ * Harmonics of higher degrees are left out, and those that are not there 0. */
+void conic_gaussians_put(const conic_gaussians *from, conic_gaussians *to, size_t first);
+
 /* Turns a scene about the origin by a rotation, harmonics too. */
 void conic_gaussians_rotate(conic_context *context, conic_gaussians *gaussians, const double rotation[3][3]);
 
