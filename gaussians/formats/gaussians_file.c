@@ -72,6 +72,17 @@ conic_status conic_gaussian_bytes_wrong(const conic_gaussian_bytes *file, size_t
   return conic_fail(file->context, CONIC_ERROR_INPUT, "%s: %s (at byte %zu)", file->name, what, at);
 }
 
+conic_status conic_gaussian_bytes_open(const conic_gaussian_bytes *file, const char *name, char path[4096],
+                                       conic_mapping *mapping) {
+  const char *own = file->path ? file->path : "";
+  int n = snprintf(path, 4096, "%.*s%s", (int)(conic_file_name(own) - own), own, name);
+  if (!own[0] || !name[0] || name[0] == '/' || strpbrk(name, "\\:") || strstr(name, "..") || n < 0 || n >= 4096 ||
+      !conic_file_is_there(path))
+    return conic_fail(file->context, CONIC_ERROR_INPUT, "%s: a file of it is not named, or not there: %s (at byte 0)",
+                      file->name, name);
+  return conic_mapping_open(file->context, path, mapping);
+}
+
 void conic_gaussians_unit_rotation(const conic_gaussians *gaussians, size_t i, double q[4]) {
   double sum = 0.0;
   for (int k = 0; k < 4; k++) {

@@ -1,7 +1,6 @@
 /* lod-meta.json, streamed .sog (PlayCanvas): a tree whose leaves name, by level, rows of several .sog, each of which
  * has one level. All files of level 0, the finest, are read. */
 
-#include "core/files/file.h"
 #include "core/files/json_read.h"
 #include "core/splats/faces.h"
 #include "gaussians/formats/gaussian_formats.h"
@@ -82,15 +81,7 @@ static conic_status read_unit(const levels_reader *self, size_t i_file, conic_ga
   char path[4096];
   conic_mapping mapping;
   memset(unit, 0, sizeof *unit);
-  int n = file->path
-              ? snprintf(path, sizeof path, "%.*s%s", (int)(conic_file_name(file->path) - file->path), file->path, name)
-              : -1;
-  if (!name[0] || name[0] == '/' || strpbrk(name, "\\:") || strstr(name, "..") || n < 0 || (size_t)n >= sizeof path)
-    return conic_gaussian_bytes_wrong(file, 0, "a level's file is not named, or not beside it");
-  if (!conic_file_is_there(path))
-    return conic_fail(file->context, CONIC_ERROR_INPUT, "%s: a level's file is not there: %s (at byte 0)", file->name,
-                      name);
-  conic_status status = conic_mapping_open(file->context, path, &mapping);
+  conic_status status = conic_gaussian_bytes_open(file, name, path, &mapping);
   if (status != CONIC_OK)
     return status;
   const conic_gaussian_bytes bytes = {file->context, path, path, mapping.bytes, mapping.n_bytes, file->options};

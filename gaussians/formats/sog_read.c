@@ -2,7 +2,6 @@
  * for values of a table, or, in version 1, for equal steps between two. */
 
 #include "core/base/gaussian.h"
-#include "core/files/file.h"
 #include "core/files/json_read.h"
 #include "core/files/zip.h"
 #include "gaussians/formats/gaussian_formats.h"
@@ -141,18 +140,10 @@ static conic_status read_meta(sog_reader *reader) {
 /* --- the pictures --- */
 
 static conic_status open_file(const sog_reader *reader, const char *name, conic_mapping *file) {
-  const char *path = reader->file->path;
-  char beside[4096];
+  char path[4096];
   memset(file, 0, sizeof *file);
-  if (name[0] == 0 || strpbrk(name, "/\\"))
-    return sog_wrong(reader, "meta.json does not name all of its pictures, or elsewhere");
-  if (reader->is_zip)
-    return conic_zip_read(&reader->zip, name, MOST_FILE, &file->bytes, &file->n_bytes);
-  int n =
-      snprintf(beside, sizeof beside, "%.*s%s", path ? (int)(conic_file_name(path) - path) : 0, path ? path : "", name);
-  if (!path || n < 0 || (size_t)n >= sizeof beside)
-    return sog_wrong(reader, "the pictures that belong to it cannot be looked for");
-  return conic_mapping_open(reader->file->context, beside, file);
+  return reader->is_zip ? conic_zip_read(&reader->zip, name, MOST_FILE, &file->bytes, &file->n_bytes)
+                        : conic_gaussian_bytes_open(reader->file, name, path, file);
 }
 
 /* No more pixels than there are Gaussians, in rows that are full but for a few. */
