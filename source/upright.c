@@ -29,7 +29,7 @@ const char *conic_up_basis_reason(conic_up_basis basis) {
 }
 
 /* The most splats and triangles to look at; fewer than the least tell nothing. */
-enum { MOST_SAMPLES = 20000, LEAST_SAMPLES = 30, CELLS = 30 };
+enum { MOST_SAMPLES = 20000, LEAST_SAMPLES = 30, ENOUGH_PARTS = 5000, CELLS = 30 };
 
 /* A flat model is lower than this part of both its ground extents. A mesh in a plane, which is thinner still, is a
  * drawing, to be looked at from its front; points in a plane are a floor. */
@@ -128,8 +128,8 @@ static void take_triangle_samples(samples *s, const conic_triangles *t) {
   }
   for (size_t i = 0; i < t->count; i += stride) {
     find_corners(t, i, corner, area);
-    double parts = total > 0.0 ? conic_length(area) / total * MOST_SAMPLES : 1.0;
-    add_parts(s, corner, area, parts >= 4.0 && parts <= MOST_SAMPLES ? (int)sqrt(parts) : 1);
+    double parts = total > 0.0 ? conic_length(area) / total * ENOUGH_PARTS : 1.0;
+    add_parts(s, corner, area, parts >= 4.0 && parts <= ENOUGH_PARTS ? (int)sqrt(parts) : 1);
   }
 }
 
