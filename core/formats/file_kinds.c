@@ -46,7 +46,7 @@ static const conic_foreign_kind kinds[] = {
     {"a material file", "give the .obj that names it", "mtl", BYTES("newmtl "), 0},
     {"a compressed cloud of Gaussians (SPZ)", GAUSSIANS_REMEDY, "spz", BYTES("NGSP"), 0},
     {"a cloud of Gaussians (SPLAT)", GAUSSIANS_REMEDY, "splat", NULL, 0, 0},
-    {"a cloud of Gaussians (KSPLAT)", "save it as PLY (with SuperSplat or gsbox)", "ksplat", NULL, 0, 0},
+    {"a cloud of Gaussians (KSPLAT)", GAUSSIANS_REMEDY, "ksplat", NULL, 0, 0},
     {"a compressed cloud of Gaussians (SOG)", GAUSSIANS_REMEDY, "sog", NULL, 0, 0},
     {"a scan in a maker's own format", "export E57 or LAS from the maker's program, and save that as PLY or LAS",
      "fls rcs rcp zfs rdbx rxp ptg lgs", NULL, 0, 0},
