@@ -53,6 +53,13 @@ conic_fact conic_facts_range(int is_first, const char *name, double low, double 
   return CONIC_LINE(is_first ? "values" : "", "%s: %.*g to %.*g", name, digits, low, digits, high);
 }
 
+void conic_facts_add_system(conic_facts *facts, const conic_georeference *reference) {
+  if (reference->keys || reference->is_unknown)
+    CONIC_ADD_FACTS(facts, CONIC_COUNT("epsg", reference->epsg),
+                    reference->epsg ? CONIC_LINE("system", "EPSG:%u", reference->epsg)
+                                    : CONIC_LINE("system", "one without an EPSG code"));
+}
+
 void conic_facts_add_bounds(conic_facts *facts, const double low[3], const double high[3]) {
   CONIC_ADD_FACTS(
       facts, CONIC_OBJECT("bounds"), CONIC_ARRAY("min"), CONIC_NUMBER(NULL, low[0]), CONIC_NUMBER(NULL, low[1]),

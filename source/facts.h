@@ -3,6 +3,7 @@
 
 #include "conic/source.h"
 #include "core/base/message.h"
+#include "core/pictures/georeference.h"
 
 #define CONIC_COUNT(name, value) ((conic_fact){.type = CONIC_FACT_COUNT, .key = (name), .count = (uint64_t)(value)})
 #define CONIC_NUMBER(name, value) ((conic_fact){.type = CONIC_FACT_NUMBER, .key = (name), .number = (double)(value)})
@@ -38,6 +39,9 @@ void conic_facts_add_up(conic_facts *facts, const double up[3], conic_up_basis b
 
 /* The line of a value's range, the first one or another. */
 conic_fact conic_facts_range(int is_first, const char *name, double low, double high);
+
+/* The code of a coordinate system, and its line, where there is one. */
+void conic_facts_add_system(conic_facts *facts, const conic_georeference *reference);
 
 /* The object "bounds", and its line. */
 void conic_facts_add_bounds(conic_facts *facts, const double low[3], const double high[3]);

@@ -188,6 +188,14 @@ static void tell_layers_rest(const conic_source *source, conic_facts *facts) {
   CONIC_ADD_FACTS(facts, CONIC_END);
 }
 
+static void tell_system(const conic_layers *layers, conic_facts *facts) {
+  conic_georeference reference;
+  if (conic_layers_find_georeference(layers, &reference) != CONIC_OK)
+    return;
+  conic_facts_add_system(facts, &reference);
+  conic_georeference_release(facts->context, &reference);
+}
+
 /* Facts of another kind's hierarchy, or of one on a web server: opening it finds them. */
 static conic_status tell_hierarchy(conic_source *source, conic_facts *facts) {
   conic_layers *layers;
@@ -196,6 +204,7 @@ static conic_status tell_hierarchy(conic_source *source, conic_facts *facts) {
   if (status != CONIC_OK)
     return status;
   conic_layers_measure(layers, 1.5f, &found);
+  tell_system(layers, facts);
   CONIC_ADD_FACTS(facts, CONIC_COUNT("points", found.n_samples), CONIC_TRUTH("colors", found.has_colors),
                   CONIC_NUMBER("spacing", found.spacing), CONIC_NUMBER("near", found.near_z),
                   CONIC_LINE("points", "%" PRIu64 "%s", found.n_samples, found.has_colors ? ", with colours" : ""),
@@ -225,6 +234,9 @@ static conic_status tell_layers_values(conic_source *source, conic_facts *facts)
   conic_status status = conic_layers_file_open(source->context, source->name, &file);
   if (status != CONIC_OK)
     return status;
+  if (file.header.epsg)
+    CONIC_ADD_FACTS(facts, CONIC_COUNT("epsg", file.header.epsg),
+                    CONIC_LINE("system", "EPSG:%u", (unsigned)file.header.epsg));
   for (uint32_t i = 0; i < file.header.schema.n; i++) {
     const conic_layers_attribute *value = &file.header.schema.list[i];
     if (value->kind != CONIC_LAYERS_VALUE)

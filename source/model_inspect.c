@@ -173,6 +173,36 @@ static void tell_up(conic_context *context, const char *path, const conic_model 
   conic_context_destroy(own);
 }
 
+/* What decides a picture and shows in no number. */
+static conic_status tell_meanings(conic_context *context, const char *path, const conic_model *model,
+                                  conic_facts *facts) {
+  static const char *const colors[] = {
+      [CONIC_COLORS_NONE] = "none",
+      [CONIC_COLORS_DISPLAY] = "fractions of 1, as displays take them (sRGB); --colors linear says otherwise",
+      [CONIC_COLORS_LINEAR] = "fractions of 1, linear",
+      [CONIC_COLORS_CODES] = "whole codes, as displays take them (sRGB)",
+      [CONIC_COLORS_TRAINED] = "harmonics of Gaussians"};
+  static const char *const words[] = {"none", "display", "linear", "codes", "trained"};
+  const int is_metric = model->kind == CONIC_MODEL_GLTF || model->kind == CONIC_MODEL_GLB ||
+                        model->kind == CONIC_MODEL_E57 || model->kind == CONIC_MODEL_PTX;
+  conic_georeference reference;
+  conic_status status = conic_georeference_read(context, path, &reference);
+  if (status != CONIC_OK)
+    return status;
+  CONIC_ADD_FACTS(facts, conic_fact_text(CONIC_FACT_TEXT, "colors", "%s", words[model->colors_are]));
+  if (model->colors_are)
+    CONIC_ADD_FACTS(facts, CONIC_LINE("colours", "%s", colors[model->colors_are]));
+  if (is_metric)
+    CONIC_ADD_FACTS(facts, conic_fact_text(CONIC_FACT_TEXT, "unit", "m"), CONIC_LINE("unit", "metres, by the format"));
+  conic_facts_add_system(facts, &reference);
+  if (model->n_unmeasured)
+    CONIC_ADD_FACTS(
+        facts, CONIC_COUNT("unmeasured", model->n_unmeasured),
+        CONIC_LINE("left out", "%llu points that were not measured", (unsigned long long)model->n_unmeasured));
+  conic_georeference_release(context, &reference);
+  return CONIC_OK;
+}
+
 conic_status conic_model_inspect(conic_context *context, const char *path, int is_checked, conic_facts *facts) {
   conic_model model;
   double low[3], high[3];
@@ -190,9 +220,11 @@ conic_status conic_model_inspect(conic_context *context, const char *path, int i
     conic_facts_add_bounds(facts, low, high);
     tell_up(context, path, &model, facts);
   }
+  status = tell_meanings(context, path, &model, facts);
   if (is_checked)
     tell_defects(&model.points, facts);
-  status = tell_values(context, path, &model, is_checked, facts);
+  if (status == CONIC_OK)
+    status = tell_values(context, path, &model, is_checked, facts);
   conic_model_release(context, &model);
   return status;
 }

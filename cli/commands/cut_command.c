@@ -3,6 +3,7 @@
 #include "cli/command.h"
 #include "cli/commands/build_steps.h"
 #include "cli/cut_region.h"
+#include "cli/points/points_input.h"
 #include "core/files/file.h"
 #include "core/formats/las_write.h"
 
@@ -110,6 +111,8 @@ static conic_status cut_to_ply(cut_job *job) {
   double start;
   conic_status status = read_part(job, &start);
   if (status == CONIC_OK)
+    status = cli_points_find_epsg(job->base.session, job->base.input, 0, &options.epsg);
+  if (status == CONIC_OK)
     status = conic_splats_writer_open(job->base.session->context, job->base.output, (size_t)job->n_out, job->fields,
                                       &options, &job->writer);
   if (status == CONIC_OK)
@@ -127,9 +130,12 @@ static conic_status plan_to_layers(cut_job *job) {
   conic_layers *layers;
   job->building.memory_bytes = (uint64_t)(job->memory_mib * 1048576.0);
   job->building.cutoff = (float)job->cutoff;
-  if (!conic_layers_is_file(job->base.input))
-    return CONIC_OK;
-  conic_status status = conic_layers_open(job->base.session->context, job->base.input, NULL, &layers);
+  unsigned epsg;
+  conic_status status = cli_points_find_epsg(job->base.session, job->base.input, 0, &epsg);
+  job->building.epsg = epsg;
+  if (status != CONIC_OK || !conic_layers_is_file(job->base.input))
+    return status;
+  status = conic_layers_open(job->base.session->context, job->base.input, NULL, &layers);
   if (status == CONIC_OK)
     conic_layers_continue(layers, &job->building);
   conic_layers_close(layers);
@@ -155,7 +161,12 @@ static conic_status cut_to_layers(cut_job *job) {
 /* The header of a LAS is written again at the end. */
 static conic_status cut_to_las(cut_job *job) {
   conic_context *context = job->base.session->context;
-  conic_status status = conic_las_writer_open(context, job->base.output, job->base.input, &job->las);
+  conic_georeference reference;
+  conic_status status = cli_points_find_reference(context, job->base.input, &reference);
+  if (status == CONIC_OK) {
+    status = conic_las_writer_open(context, job->base.output, job->base.input, &reference, &job->las);
+    conic_georeference_release(context, &reference);
+  }
   if (status != CONIC_OK)
     return status;
   double start;

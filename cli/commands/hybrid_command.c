@@ -1,5 +1,6 @@
 /* conic hybrid: turns a mesh into clusters of triangles and of surfels. */
 #include "cli/commands/build_coloring.h"
+#include "cli/points/points_input.h"
 #include "core/base/context_struct.h"
 #include "source/mesh_input.h"
 #include "source/reach.h"
@@ -72,7 +73,10 @@ static int make_hybrid(void *cookie) {
   hybrid_job *job = cookie;
   cli_stage *stages = job->base.stages;
   double start = cli_seconds();
-  conic_status status = job->memory_mib ? build_within(job) : build_whole(job);
+  unsigned epsg;
+  conic_status status = cli_points_find_epsg(job->base.session, job->base.input, 1, &epsg);
+  if (status == CONIC_OK)
+    status = job->memory_mib ? build_within(job) : build_whole(job);
   start = cli_build_end_stage(&stages[WORK], start + stages[READ].seconds);
   stages[CLUSTER].seconds = job->report.cluster_seconds;
   stages[SAMPLE].seconds = job->report.sample_seconds;

@@ -4,6 +4,7 @@
 #include "cli/commands/build_steps.h"
 #include "cli/commands/mls_sizes.h"
 #include "cli/device_option.h"
+#include "cli/points/points_input.h"
 #include "core/splats/point_values.h"
 #include "core/splats/repairs_log.h"
 
@@ -146,10 +147,14 @@ static conic_status feed_points(void *cookie, conic_batch_receiver *receive, voi
 /* The last point is projected. Nothing is written if none is left. */
 static conic_status begin_cells(void *cookie, const conic_surface_report *report, unsigned fields) {
   mls_job *job = cookie;
+  conic_write_options options;
+  conic_write_options_init(&options);
   job->work_end = cli_seconds();
-  return report->n_out == 0 ? CONIC_OK
-                            : conic_splats_writer_open(job->base.session->context, job->base.output, report->n_out,
-                                                       fields, NULL, &job->writer);
+  conic_status status = cli_points_find_epsg(job->base.session, job->base.input, 0, &options.epsg);
+  return report->n_out == 0 || status != CONIC_OK
+             ? status
+             : conic_splats_writer_open(job->base.session->context, job->base.output, report->n_out, fields, &options,
+                                        &job->writer);
 }
 
 static conic_status append_cleaned(void *cookie, const conic_splats *batch) {
@@ -252,7 +257,12 @@ static int write_points(mls_job *job) {
                      job->report.outcomes[CONIC_SURFACE_NO_MINIMUM]);
   if (is_by_cells(job)) /* the output is written already */
     return CLI_DONE;
-  int exit_code = cli_exit_of(conic_splats_write(job->base.session->context, job->base.output, &job->result, NULL));
+  conic_write_options options;
+  conic_write_options_init(&options);
+  conic_status status = cli_points_find_epsg(job->base.session, job->base.input, 0, &options.epsg);
+  if (status == CONIC_OK)
+    status = conic_splats_write(job->base.session->context, job->base.output, &job->result, &options);
+  int exit_code = cli_exit_of(status);
   cli_build_end_stage(&job->base.stages[WRITE], start);
   return exit_code;
 }

@@ -1,6 +1,7 @@
 /* conic octree: makes a point-octree from splats, raw points or a mesh. */
 
 #include "cli/commands/build_coloring.h"
+#include "cli/points/points_input.h"
 #include "core/splats/repairs_log.h"
 
 typedef struct octree_job {
@@ -27,7 +28,10 @@ static conic_status build_from_model(octree_job *job) {
   read_options.cutoff = job->options.cutoff;
   cli_coloring_read(&job->coloring, &read_options);
   double start = cli_seconds();
-  conic_status status = conic_gaussians_read_model(context, job->base.input, &read_options, &model);
+  unsigned epsg;
+  conic_status status = cli_points_find_epsg(job->base.session, job->base.input, 1, &epsg);
+  if (status == CONIC_OK)
+    status = conic_gaussians_read_model(context, job->base.input, &read_options, &model);
   start = cli_build_end_stage(&stages[READ], start);
   if (status != CONIC_OK)
     return status;

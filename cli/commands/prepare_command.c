@@ -108,7 +108,10 @@ static int write_splats(prepare_job *job) {
   conic_write_options options;
   conic_write_options_init(&options);
   options.cutoff = job->estimate.cutoff;
-  return cli_exit_of(conic_splats_write(job->base.session->context, job->base.output, &job->model.points, &options));
+  conic_status status = cli_points_find_epsg(job->base.session, job->base.input, 0, &options.epsg);
+  if (status == CONIC_OK)
+    status = conic_splats_write(job->base.session->context, job->base.output, &job->model.points, &options);
+  return cli_exit_of(status);
 }
 
 static void report_prepared(cli_json *json, const void *cookie) {

@@ -1,6 +1,7 @@
 /* conic layer: makes a layered point cloud from any number of samples. */
 
 #include "cli/layer/layer_job.h"
+#include "cli/points/points_input.h"
 #include "lod/layers/build/layers_team.h"
 
 static const char *const payload_words[] = {"plain", "full", NULL};
@@ -55,6 +56,24 @@ static void settle_up(cli_layer_job *job) {
     memcpy(job->options.up, survey_up, sizeof job->options.up);
 }
 
+/* The coordinate system that all inputs have. */
+static conic_status settle_system(cli_layer_job *job) {
+  conic_status status = CONIC_OK;
+  int differs = 0;
+  for (int i = job->n_continued; i < job->share.n_inputs && status == CONIC_OK; i++) {
+    unsigned epsg;
+    status = cli_points_find_epsg(job->base.session, job->share.inputs[i], 0, &epsg);
+    differs |= i > 0 && epsg != job->options.epsg;
+    job->options.epsg = i > 0 ? job->options.epsg : epsg;
+  }
+  if (differs)
+    cli_warn(job->base.session, "%s: its inputs are not all of one coordinate system, and none is kept",
+             job->base.output);
+  if (differs)
+    job->options.epsg = 0;
+  return status;
+}
+
 /* Files that are continued come before the added ones, as inputs that are read differently. */
 static conic_status list_layer_inputs(cli_layer_job *job) {
   cli_session *session = job->base.session;
@@ -88,6 +107,9 @@ static conic_status plan_layers(cli_layer_job *job, conic_read_options *options)
   if (status != CONIC_OK)
     return status;
   settle_up(job);
+  status = conic_team_agree(job->share.team, settle_system(job));
+  if (status != CONIC_OK)
+    return status;
   cli_layer_reading(job, options);
   options->where = job->base.where;
   status = cli_points_share_out(&job->share, options, cli_layer_most_whole(job));

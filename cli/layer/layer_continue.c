@@ -59,6 +59,8 @@ conic_status cli_layer_continue(cli_layer_job *job, const char *const *paths, in
     else if (memcmp(first.up, job->options.up, sizeof first.up) != 0) /* a direction that not all files state is
                                                                          unknown */
       memset(first.up, 0, sizeof first.up);
+    if (first.epsg != job->options.epsg)
+      first.epsg = 0;
     first.is_unoriented = job->options.is_unoriented;
     first.keeps_all = job->options.keeps_all;
     status = i == 0 ? take_value_names(job, layers) : check_value_names(job, layers, opened);

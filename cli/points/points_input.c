@@ -3,6 +3,7 @@
 #include "conic/layers_draw.h"
 #include "core/files/file.h"
 #include "core/formats/model_read.h"
+#include "lod/layers/draw/layers_gather.h"
 
 /* A COPC on disk is also a LAZ, which gives more values. */
 int cli_points_are_hierarchy(const char *path) {
@@ -28,6 +29,30 @@ int cli_points_are_surveys(const char *const *paths, int n_paths) {
     n_surveys += conic_file_begins_with(paths[i], "LASF", 4) || conic_file_begins_with(paths[i], "ASTM-E57", 8) ||
                  conic_file_has_ending(paths[i], "ptx") || cli_points_are_hierarchy(paths[i]);
   return n_paths > 0 && n_surveys == n_paths;
+}
+
+conic_status cli_points_find_reference(conic_context *context, const char *path, conic_georeference *reference) {
+  conic_layers *layers;
+  if (!conic_layers_is_file(path) && !cli_points_are_hierarchy(path))
+    return conic_georeference_read(context, path, reference);
+  memset(reference, 0, sizeof *reference);
+  conic_status status = conic_layers_open(context, path, NULL, &layers);
+  if (status == CONIC_OK)
+    status = conic_layers_find_georeference(layers, reference);
+  conic_layers_close(layers);
+  return status;
+}
+
+conic_status cli_points_find_epsg(cli_session *session, const char *path, int keeps_none, unsigned *epsg) {
+  conic_georeference reference;
+  conic_status status = cli_points_find_reference(session->context, path, &reference);
+  *epsg = status == CONIC_OK ? reference.epsg : 0;
+  if (status == CONIC_OK && (keeps_none ? *epsg > 0 : !*epsg && (reference.keys || reference.is_unknown)))
+    cli_warn(session, "%s: its coordinate system%s is left out", path,
+             keeps_none ? ", which the output cannot hold," : " has no EPSG code, and");
+  if (status == CONIC_OK)
+    conic_georeference_release(session->context, &reference);
+  return status;
 }
 
 /* A hierarchy gives only places and colours; options that need more are refused, not ignored. */

@@ -1,8 +1,10 @@
 /* Points to build from: a model's, or those of another kind's hierarchy, which may be on a web server. */
 #pragma once
 
+#include "cli/session.h"
 #include "conic/gaussians.h"
 #include "core/base/base.h"
+#include "core/pictures/georeference.h"
 
 /* Whether it is read as another kind's hierarchy, which gives only places and colours. */
 int cli_points_are_hierarchy(const char *path);
@@ -12,6 +14,12 @@ int cli_points_may_be_text(conic_context *context, const char *path);
 
 /* Whether all are surveys, whose z points up. */
 int cli_points_are_surveys(const char *const *paths, int n_paths);
+
+/* The coordinate system of a file or a hierarchy of points. Errors: MEMORY; those of opening it. */
+conic_status cli_points_find_reference(conic_context *context, const char *path, conic_georeference *reference);
+/* Its code, for an output that keeps no more; 0: it has none. A warning says that a system without one gets lost; where
+ * `keeps_none`, that any does. Errors: as above. */
+conic_status cli_points_find_epsg(cli_session *session, const char *path, int keeps_none, unsigned *epsg);
 
 /* As conic_model_stream. */
 conic_status cli_points_stream(conic_context *context, const char *path, const conic_read_options *options,

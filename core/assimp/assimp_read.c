@@ -69,7 +69,13 @@ static conic_status fail_as_told(assimp_reader *reader, const conic_assimp_recor
 
 static conic_status pass_note_on(assimp_reader *reader, const conic_assimp_record *record) {
   char text[LONGEST_TEXT];
+  const char *of_3mf = "Ignored file of unknown type: ";
   conic_status status = take_text(reader, record, text);
+  if (status == CONIC_OK && strncmp(text, of_3mf, strlen(of_3mf)) == 0 && conic_file_has_ending(text, "model"))
+    return conic_fail(reader->input->context, CONIC_ERROR_INPUT,
+                      "%s: a part is in %.100s, by 3MF's production extension, which is not read: save it without, or "
+                      "as OBJ",
+                      reader->input->name, text + strlen(of_3mf));
   if (status == CONIC_OK)
     conic_log(reader->input->context, CONIC_LOG_WARNING, "%s: %.200s", reader->input->name, text);
   return status;

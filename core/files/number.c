@@ -188,6 +188,21 @@ static size_t parse_named(const char *text, size_t length, double *value) {
   return n;
 }
 
+/* Past what Visual C++ writes behind the point of "1." for what is no number: #INF, #IND, #QNAN, #SNAN, and digits. */
+static const char *parse_hash(const char *c, const char *end, double *value) {
+  static const char *const names[] = {"inf", "ind", "qnan", "snan"};
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    const size_t n = match_word(c + 1, (size_t)(end - c - 1), names[i]);
+    if (!n)
+      continue;
+    *value = i ? infinity() - infinity() : infinity();
+    for (c += 1 + n; c < end && conic_is_digit(*c);)
+      c++;
+    return c;
+  }
+  return c;
+}
+
 /* The exponent after the digits, limited so that sums with it cannot overflow. Returns past it. */
 static const char *parse_exponent(const char *text, const char *end, int64_t *exponent) {
   const char *c = text;
@@ -249,6 +264,8 @@ size_t conic_number_parse(const char *text, size_t length, double *value) {
     after = parse_exponent(after, end, &exponent);
     found.magnitude += exponent;
     *value = convert(&found);
+    if (after < end && *after == '#' && after > c + 1 && after[-1] == '.')
+      after = parse_hash(after, end, value);
   } else {
     size_t n = parse_named(c, (size_t)(end - c), value);
     if (!n)

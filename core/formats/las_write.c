@@ -87,8 +87,28 @@ static conic_status take_source_head(conic_las_writer *w, FILE *file) {
   return status;
 }
 
+/* As the record of keys that a LAS would have. */
+static conic_status put_reference(conic_las_writer *w, const conic_georeference *reference) {
+  const size_t n = reference->n_keys * sizeof *reference->keys;
+  if (!reference->epsg || w->n_records)
+    return CONIC_OK;
+  unsigned char *to = conic_memory_allocate_zeroed(w->context, CONIC_LAS_RECORD_HEAD + n, 1);
+  if (!to)
+    return CONIC_ERROR_MEMORY;
+  conic_memory_release(w->context, w->records);
+  put_letters(to + 2, "LASF_Projection");
+  conic_store_bits(to + 18, 2, KEYS);
+  conic_store_bits(to + 20, 2, n);
+  for (size_t i = 0; i < reference->n_keys; i++)
+    conic_store_bits(to + CONIC_LAS_RECORD_HEAD + 2 * i, 2, reference->keys[i]);
+  w->records = to;
+  w->n_record_bytes = CONIC_LAS_RECORD_HEAD + n;
+  w->n_records = 1;
+  return CONIC_OK;
+}
+
 conic_status conic_las_writer_open(conic_context *context, const char *path, const char *source,
-                                   conic_las_writer **writer) {
+                                   const conic_georeference *reference, conic_las_writer **writer) {
   *writer = NULL;
   if (strcmp(path, "-") == 0)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "a .las goes into a file, not to standard output");
@@ -101,6 +121,8 @@ conic_status conic_las_writer_open(conic_context *context, const char *path, con
   conic_status status = file ? take_source_head(w, file) : CONIC_OK;
   if (file)
     fclose(file);
+  if (status == CONIC_OK)
+    status = put_reference(w, reference);
   if (status == CONIC_OK)
     status = conic_output_open(context, path, &w->output);
   if (status != CONIC_OK)

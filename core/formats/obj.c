@@ -22,6 +22,7 @@ typedef struct obj_reader {
   conic_builder builder;
   uint64_t counts[N_KINDS];
   largest_index used[N_KINDS];
+  uint64_t n_wrong[N_KINDS];      /* indices that name none of what there is so far */
   uint64_t n_lines, n_degenerate; /* that are left out: lines, and faces of fewer than 3 corners */
   double (*normals)[3];
   size_t normal_capacity;
@@ -95,7 +96,7 @@ static conic_status read_texture(void *data) {
   return status;
 }
 
-/* Reads an integer that is not 0; returns past it, or null. */
+/* Reads an integer; returns past it, or null. */
 static const char *parse_index(const char *text, const char *end, int64_t *index) {
   const char *c = text;
   int is_negative = c < end && *c == '-';
@@ -105,7 +106,7 @@ static const char *parse_index(const char *text, const char *end, int64_t *index
   for (*index = 0; c < end && *c >= '0' && *c <= '9'; c++)
     if (*index < INT64_C(1) << 40)
       *index = *index * 10 + (*c - '0');
-  if (c == digits || *index == 0)
+  if (c == digits)
     return NULL;
   if (is_negative)
     *index = -*index;
@@ -115,9 +116,19 @@ static const char *parse_index(const char *text, const char *end, int64_t *index
 /* Turns the file's numbers, from 1 or back from the last, into indices from 0. */
 static conic_status resolve_index(obj_reader *reader, int kind, int64_t index, uint32_t *resolved) {
   uint64_t count = reader->counts[kind];
-  if (index < 0 && (uint64_t)-index > count)
+  const int is_wrong = index == 0 || (index < 0 && (uint64_t)-index > count);
+  if (is_wrong && kind == VERTEX)
     return conic_input_wrong(reader->input, "index %lld, but there are only %llu %s so far", (long long)index,
                              (unsigned long long)count, kind_names[kind]);
+  if (is_wrong) {
+    if (reader->n_wrong[kind]++ == 0)
+      conic_log(reader->input->context, CONIC_LOG_WARNING,
+                "%s: index %lld, but there are only %llu %s so far: corners that name such do without (line %llu)",
+                reader->input->name, (long long)index, (unsigned long long)count, kind_names[kind],
+                (unsigned long long)reader->input->line);
+    *resolved = CONIC_NO_CORNER;
+    return CONIC_OK;
+  }
   uint64_t found = index < 0 ? count - (uint64_t)-index : (uint64_t)index - 1;
   if (found >= CONIC_MAX_POINTS)
     return conic_input_wrong(reader->input, "an index is out of range");
@@ -146,7 +157,7 @@ static conic_status read_corner(obj_reader *reader, const char *word, size_t len
         break;
     }
     c = parse_index(c, end, &index);
-    if (!c)
+    if (!c || (kind == VERTEX && index == 0))
       return conic_input_wrong(reader->input, "a face's corner is v, v/t, v//n or v/t/n");
     conic_status status = resolve_index(reader, kind, index, &resolved[kind]);
     if (status != CONIC_OK)

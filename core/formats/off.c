@@ -35,6 +35,11 @@ static conic_status read_off_head(off_reader *reader) {
   double numbers[MOST_NUMBERS];
   int n, is_done = 0;
   conic_status status = conic_input_word(input, &word, &length);
+  while (status == CONIC_OK && !is_done && (length == 0 || *word == '#')) {
+    status = conic_input_next_line(input, &is_done);
+    if (status == CONIC_OK)
+      status = conic_input_word(input, &word, &length);
+  }
   for (; status == CONIC_OK && length > 3; word++, length--) {
     reader->has_coordinates |= *word == 'S';
     reader->has_normals |= *word == 'N';

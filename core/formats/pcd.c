@@ -16,6 +16,7 @@ typedef struct pcd_reader {
   int n_slots;
   int has_origin, is_origin_set;
   int is_again;
+  uint64_t n_rows; /* that have been read */
   double block[N_SLOTS][BLOCK];
 } pcd_reader;
 
@@ -83,9 +84,26 @@ static void find_origin(pcd_reader *reader, size_t n) {
   }
 }
 
+/* Closes the block's gaps where a camera or a scanner saw nothing, as NaN says; returns how many points are left. */
+static size_t drop_unmeasured(pcd_reader *reader, size_t n) {
+  size_t kept = 0;
+  for (size_t i = 0; i < n; i++) {
+    if (reader->block[0][i] != reader->block[0][i] && reader->block[1][i] != reader->block[1][i] &&
+        reader->block[2][i] != reader->block[2][i])
+      continue;
+    for (int slot = 0; slot < reader->n_slots && kept < i; slot++)
+      reader->block[slot][kept] = reader->block[slot][i];
+    kept++;
+  }
+  reader->builder.model->n_unmeasured += n - kept;
+  return kept;
+}
+
 /* Appends the block's first n points. */
 static conic_status append_rows(pcd_reader *reader, size_t n) {
   conic_splats *points = &reader->builder.model->points;
+  reader->n_rows += n;
+  n = drop_unmeasured(reader, n);
   if (conic_builder_points(&reader->builder) + n > CONIC_MAX_POINTS)
     return conic_input_wrong(reader->input, "too many points");
   conic_status status = conic_builder_reserve_points(&reader->builder, points->count + n);
@@ -196,8 +214,8 @@ static conic_status read_binary_rows(pcd_reader *reader) {
   conic_input *input = reader->input;
   size_t row_bytes = reader->header.row_bytes;
   conic_status status = CONIC_OK;
-  while (status == CONIC_OK && conic_builder_points(&reader->builder) < reader->header.n_points) {
-    uint64_t left = reader->header.n_points - conic_builder_points(&reader->builder);
+  while (status == CONIC_OK && reader->n_rows < reader->header.n_points) {
+    uint64_t left = reader->header.n_points - reader->n_rows;
     status = conic_input_fill(input, row_bytes);
     size_t n = conic_input_available(input) / row_bytes;
     if (status != CONIC_OK || n == 0)
@@ -280,7 +298,7 @@ static conic_status read_compressed(pcd_reader *reader) {
 /* --- all --- */
 
 static conic_status check_points(const pcd_reader *reader) {
-  uint64_t count = conic_builder_points(&reader->builder), declared = reader->header.n_points;
+  uint64_t count = reader->n_rows, declared = reader->header.n_points;
   conic_context *context = reader->input->context;
   if (count == 0 && declared > 0)
     return wrong_bytes(reader, "the file ends before its first point");

@@ -1,5 +1,7 @@
 #include "core/formats/pcd_header.h"
 
+#include <strings.h>
+
 #include "core/files/number.h"
 #include "core/splats/builder.h"
 
@@ -97,13 +99,18 @@ static conic_status read_viewpoint_value(header_reader *reader, size_t i, const 
   return CONIC_OK;
 }
 
+/* In any case: some writers have it all lower, or the data's kind upper. */
+static int is_keyword(const char *word, size_t length, const char *keyword) {
+  return length == strlen(keyword) && strncasecmp(word, keyword, length) == 0;
+}
+
 static conic_status read_data(header_reader *reader) {
   static const char *const words[] = {"ascii", "binary", "binary_compressed"};
   const char *word;
   size_t length;
   conic_status status = conic_input_word(reader->input, &word, &length);
   for (int i = 0; i < 3 && status == CONIC_OK; i++)
-    if (conic_input_is(word, length, words[i]))
+    if (is_keyword(word, length, words[i]))
       reader->header->data = (conic_pcd_data)(CONIC_PCD_ASCII + i);
   return status == CONIC_OK && reader->header->data == CONIC_PCD_NONE
              ? conic_input_wrong(reader->input, "the data are neither ascii, binary nor binary_compressed")
@@ -113,25 +120,25 @@ static conic_status read_data(header_reader *reader) {
 static conic_status read_header_line(header_reader *reader, const char *word, size_t length) {
   conic_pcd_header *header = reader->header;
   size_t n;
-  if (length == 0 || word[0] == '#' || conic_input_is(word, length, "VERSION"))
+  if (length == 0 || word[0] == '#' || is_keyword(word, length, "VERSION"))
     return CONIC_OK;
-  if (conic_input_is(word, length, "FIELDS") || conic_input_is(word, length, "COLUMNS"))
+  if (is_keyword(word, length, "FIELDS") || is_keyword(word, length, "COLUMNS"))
     return read_names(reader);
-  if (conic_input_is(word, length, "SIZE"))
+  if (is_keyword(word, length, "SIZE"))
     return read_words(reader, read_size, &reader->n_sizes);
-  if (conic_input_is(word, length, "TYPE"))
+  if (is_keyword(word, length, "TYPE"))
     return read_words(reader, read_type, &reader->n_types);
-  if (conic_input_is(word, length, "COUNT"))
+  if (is_keyword(word, length, "COUNT"))
     return read_words(reader, read_count, &reader->n_counts);
-  if (conic_input_is(word, length, "WIDTH"))
+  if (is_keyword(word, length, "WIDTH"))
     return read_whole(reader, &header->width);
-  if (conic_input_is(word, length, "HEIGHT"))
+  if (is_keyword(word, length, "HEIGHT"))
     return read_whole(reader, &header->height);
-  if (conic_input_is(word, length, "VIEWPOINT"))
+  if (is_keyword(word, length, "VIEWPOINT"))
     return read_words(reader, read_viewpoint_value, &n);
-  if (conic_input_is(word, length, "DATA"))
+  if (is_keyword(word, length, "DATA"))
     return read_data(reader);
-  if (!conic_input_is(word, length, "POINTS"))
+  if (!is_keyword(word, length, "POINTS"))
     return conic_input_wrong(reader->input, "a line of the header begins with no word that is known");
   reader->has_points = 1;
   return read_whole(reader, &header->n_points);

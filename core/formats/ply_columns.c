@@ -211,8 +211,12 @@ conic_status conic_ply_layout_choose_fields(conic_input *input, const conic_ply_
     if (!properties[i].is_list)
       status = conic_fields_add(builder, properties[i].name, strlen(properties[i].name),
                                 conic_ply_type_name(properties[i].type));
+  conic_read_options asked = *options;
+  int i_confidence;
+  if (asked.field_is_optional && find_value(header, vertices, "confidence", &i_confidence))
+    asked.field = NULL; /* the intensity beside it, as in Stanford's scans, tells of measuring, and is no colour */
   if (status == CONIC_OK)
-    status = conic_fields_choose(builder, input->name, options);
+    status = conic_fields_choose(builder, input->name, &asked);
   layout->n_values = status == CONIC_OK ? (int)conic_builder_columns(builder) : 0;
   for (int k = 0; k < layout->n_values; k++) {
     int field = conic_builder_column_field(builder, (size_t)k);

@@ -124,9 +124,11 @@ static void print_value(FILE *to, const char *type, const char *name) {
 static void print_header(const conic_splats_writer *writer) {
   FILE *to = conic_output_stream(writer->output);
   int has_axes = (writer->fields & CONIC_SPLATS_TANGENTS) != 0;
-  fprintf(to, "ply\nformat %s 1.0\ncomment conic %s\nelement vertex %zu\n",
-          writer->options.encoding == CONIC_PLY_ASCII ? "ascii" : "binary_little_endian", conic_version(),
-          writer->count);
+  fprintf(to, "ply\nformat %s 1.0\ncomment conic %s\n",
+          writer->options.encoding == CONIC_PLY_ASCII ? "ascii" : "binary_little_endian", conic_version());
+  if (writer->options.epsg)
+    fprintf(to, "comment crs EPSG:%u\n", writer->options.epsg);
+  fprintf(to, "element vertex %zu\n", writer->count);
   print_properties(to, writer->has_double_positions ? "double" : "float", "x y z");
   if (has_axes && writer->options.circles)
     print_properties(to, "float", "nx ny nz radius");

@@ -79,22 +79,24 @@ static conic_status read_vertex(stl_reader *reader) {
   return add_corner(reader, place);
 }
 
-/* A line at a time: only `vertex` and the ends of faces say something. */
+/* Lines do not matter: only `vertex` and the ends of faces say something, but in the solids' names. */
 static conic_status read_text(stl_reader *reader) {
   conic_status status = CONIC_OK;
-  int is_done = 0, has_end = 0;
+  int is_done = 0, has_end = 0, is_name = 1;
   for (size_t first = 0; status == CONIC_OK && !is_done;) {
     const char *word;
     size_t length;
     status = conic_input_word(reader->input, &word, &length);
-    if (status == CONIC_OK && is_word(word, length, "vertex"))
+    is_name = (is_name && !is_word(word, length, "facet")) || is_word(word, length, "endsolid");
+    if (status == CONIC_OK && !is_name && is_word(word, length, "vertex"))
       status = read_vertex(reader);
-    else if (status == CONIC_OK && (is_word(word, length, "endloop") || is_word(word, length, "endfacet"))) {
+    else if (status == CONIC_OK && !is_name &&
+             (is_word(word, length, "endloop") || is_word(word, length, "endfacet"))) {
       status = end_face(reader, first, NULL);
       first = reader->builder.model->n_triangles;
     }
     has_end |= is_word(word, length, "endsolid");
-    if (status == CONIC_OK)
+    if (status == CONIC_OK && length == 0)
       status = conic_input_next_line(reader->input, &is_done);
   }
   if (status == CONIC_OK && !has_end)

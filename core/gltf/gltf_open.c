@@ -69,7 +69,7 @@ conic_status conic_gltf_open(conic_context *context, const char *name, const cha
   status = conic_json_take(context, name, json.bytes + mark, json.n_bytes - mark, &gltf->json);
   if (status == CONIC_OK)
     status = conic_gltf_read_json(gltf);
-  if (status == CONIC_OK && gltf->version[0] && strncmp(gltf->version, "2.", 2) != 0)
+  if (status == CONIC_OK && !gltf->is_tileset && gltf->version[0] && strncmp(gltf->version, "2.", 2) != 0)
     return conic_gltf_wrong(gltf, "this is glTF %s: version 2 is read", gltf->version);
   if (status == CONIC_OK && gltf->least_version[0] && strcmp(gltf->least_version, "2.0") != 0)
     return conic_gltf_wrong(gltf, "a reader of glTF %s is needed, and this one is of 2.0", gltf->least_version);

@@ -1,9 +1,13 @@
 #include "core/pictures/georeference.h"
 
+#include <ctype.h>
+#include <strings.h>
+
 #include "core/base/byte_order.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/las_layout.h"
+#include "core/files/number.h"
 
 /* GeoKeys: the kind of system (1: projected, 2: geographic), the kind of pixel (1: an area), and the systems' codes. */
 enum { KEY_MODEL = 1024, KEY_RASTER = 1025, KEY_GEOGRAPHIC = 2048, KEY_PROJECTED = 3072, USER_DEFINED = 32767 };
@@ -81,8 +85,11 @@ static const char *find_element(const char *at, const char *end, const char *con
     is_quoted ^= *at == '"';
     for (size_t i = 0; names[i] && !is_quoted; i++) {
       size_t n = strlen(names[i]);
-      if ((size_t)(end - at) > n && memcmp(at, names[i], n) == 0 && at[n] == '[')
-        return at + n;
+      size_t blanks = n;
+      while ((size_t)(end - at) > blanks && at[blanks] == ' ')
+        blanks++;
+      if ((size_t)(end - at) > blanks && memcmp(at, names[i], n) == 0 && at[blanks] == '[')
+        return at + blanks;
     }
   }
   return NULL;
@@ -119,13 +126,68 @@ static unsigned find_own_code(const char *open, const char *end) {
   return 0;
 }
 
+/* Whether the words are there, in any case, and with any sign for the blanks between them. */
+static int has_words(const char *at, const char *end, const char *words) {
+  for (size_t n = strlen(words); (size_t)(end - at) >= n; at++) {
+    size_t i = 0;
+    while (i < n && (words[i] == ' ' || tolower((unsigned char)at[i]) == words[i]))
+      i++;
+    if (i == n)
+      return 1;
+  }
+  return 0;
+}
+
+/* The number behind a parameter's name; NaN: it is not there. */
+static double find_parameter(const char *at, const char *end, const char *name) {
+  double value;
+  for (size_t n = strlen(name); (size_t)(end - at) > n; at++) {
+    if (strncasecmp(at, name, n) != 0 || at[n] != '"')
+      continue;
+    for (at += n + 1; at < end && (*at == ',' || *at == ' ');)
+      at++;
+    return conic_number_parse(at, (size_t)(end - at), &value) ? value : NAN;
+  }
+  return NAN;
+}
+
+/* A zone of UTM in metres, whose numbers allow no doubt. */
+static unsigned find_utm(const char *open, const char *end) {
+  static const struct {
+    const char *datum;
+    unsigned north, south, first, last; /* codes are these and the zone's number */
+  } systems[] = {{"wgs 84", 32600, 32700, 1, 60},
+                 {"wgs84", 32600, 32700, 1, 60},
+                 {"wgs 1984", 32600, 32700, 1, 60},
+                 {"north american datum 1983", 26900, 0, 1, 23},
+                 {"north american 1983", 26900, 0, 1, 23},
+                 {"nad83", 26900, 0, 1, 23},
+                 {"etrs89", 25800, 0, 28, 38},
+                 {"etrs 1989", 25800, 0, 28, 38}};
+  double meridian = find_parameter(open, end, "central_meridian"), zone = (meridian + 183.0) / 6.0;
+  double north = find_parameter(open, end, "false_northing");
+  if (!has_words(open, end, "transverse mercator") || !has_words(open, end, "met") || has_words(open, end, "foot") ||
+      find_parameter(open, end, "false_easting") != 500000.0 || find_parameter(open, end, "scale_factor") != 0.9996 ||
+      find_parameter(open, end, "latitude_of_origin") != 0.0 || !(zone >= 1.0 && zone <= 60.0) || zone != floor(zone) ||
+      (north != 0.0 && north != 10000000.0) || has_words(open, end, "harn") || has_words(open, end, "csrs"))
+    return 0;
+  for (size_t i = 0; i < sizeof systems / sizeof *systems; i++)
+    if (has_words(open, end, systems[i].datum))
+      return zone < systems[i].first || zone > systems[i].last ? 0
+             : north == 0.0                                    ? systems[i].north + (unsigned)zone
+             : systems[i].south                                ? systems[i].south + (unsigned)zone
+                                                               : 0;
+  return 0;
+}
+
 unsigned conic_georeference_find_epsg(const char *text, size_t n_bytes) {
   static const char *const projected[] = {"PROJCS", "PROJCRS", "PROJECTEDCRS", NULL};
   static const char *const geographic[] = {"GEOGCS", "GEOGCRS", "GEODCRS", "GEOGRAPHICCRS", NULL};
   const char *end = text + n_bytes, *open = find_element(text, end, projected);
   if (!open)
     open = find_element(text, end, geographic);
-  return open ? find_own_code(open, end) : take_code(text, end, "EPSG:");
+  unsigned code = open ? find_own_code(open, end) : take_code(text, end, "EPSG:");
+  return open && !code ? find_utm(open, end) : code;
 }
 
 /* --- the records of a LAS --- */
@@ -237,6 +299,7 @@ static conic_status take_las(conic_context *context, const las_records *found, c
   memset(reference, 0, sizeof *reference);
   if (keys_are_sound(found))
     return take_keys(context, found, reference);
+  reference->is_unknown = found->wkt.bytes && found->wkt.n_bytes > 1 && !epsg;
   return epsg ? conic_georeference_of_epsg(context, epsg, reference) : CONIC_OK;
 }
 
@@ -270,7 +333,24 @@ static conic_status read_late_text(conic_context *context, FILE *file, const uns
     size_t n = fread(text, 1, (size_t)n_bytes, file);
     unsigned epsg = conic_georeference_find_epsg(text, n);
     conic_memory_release(context, text);
+    reference->is_unknown = n > 1 && !epsg;
     return epsg ? conic_georeference_of_epsg(context, epsg, reference) : CONIC_OK;
+  }
+  return CONIC_OK;
+}
+
+/* As conic writes it (core/formats/ply_write.c), within the first lines. */
+static conic_status read_ply(conic_context *context, const char *start, size_t n, conic_georeference *reference) {
+  static const char mark[] = "\ncomment crs ";
+  for (const char *at = start; (at = memchr(at, '\n', (size_t)(start + n - at))); at++) {
+    size_t left = (size_t)(start + n - at);
+    if (left > sizeof mark && memcmp(at, mark, sizeof mark - 1) == 0) {
+      const char *line = at + sizeof mark - 1, *line_end = memchr(line, '\n', (size_t)(start + n - line));
+      unsigned epsg = conic_georeference_find_epsg(line, (size_t)((line_end ? line_end : start + n) - line));
+      return epsg ? conic_georeference_of_epsg(context, epsg, reference) : CONIC_OK;
+    }
+    if (left > 11 && memcmp(at, "\nend_header", 11) == 0)
+      break;
   }
   return CONIC_OK;
 }
@@ -278,6 +358,8 @@ static conic_status read_late_text(conic_context *context, FILE *file, const uns
 static conic_status read_las(conic_context *context, FILE *file, conic_georeference *reference) {
   unsigned char start[CONIC_LAS_HEADER_1_4] = {0};
   size_t n = fread(start, 1, sizeof start, file), n_head = conic_load_32(start + CONIC_LAS_POINTS);
+  if (n > 4 && memcmp(start, "ply", 3) == 0)
+    return read_ply(context, (const char *)start, n, reference);
   if (n < CONIC_LAS_LEAST_HEADER || memcmp(start, "LASF", 4) != 0)
     return CONIC_OK;
   n_head = n_head < MOST_HEAD ? n_head : MOST_HEAD;

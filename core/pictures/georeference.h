@@ -10,19 +10,21 @@ typedef struct conic_georeference {
   double *numbers; /* GeoDoubleParamsTag */
   char *text;      /* GeoAsciiParamsTag, which ends in a zero byte */
   size_t n_keys, n_numbers, n_text;
-  unsigned epsg; /* of the projected system, or else of the geographic one; 0: it has no code */
+  unsigned epsg;  /* of the projected system, or else of the geographic one; 0: it has no code */
+  int is_unknown; /* there are no keys, but the file names a system in well-known text without a code */
 } conic_georeference;
 
 /* A system from its code, 1 to 65535. Errors: MEMORY. */
 conic_status conic_georeference_of_epsg(conic_context *context, unsigned epsg, conic_georeference *reference);
-/* The code of the horizontal system in well-known text of either version, or in "EPSG:26910"; 0: it names none. */
+/* The code of the horizontal system in well-known text of either version, or in "EPSG:26910"; of text without codes
+ * that of a zone of UTM on WGS 84, NAD83 or ETRS89, by its numbers. 0: it names none. */
 unsigned conic_georeference_find_epsg(const char *text, size_t n_bytes);
 /* Reads the head of a LAS: its header and the records before the points, as far as n_bytes hold them. Without a system
  * *reference is zero. Errors: MEMORY. */
 conic_status conic_georeference_of_las(conic_context *context, const unsigned char *head, size_t n_bytes,
                                        conic_georeference *reference);
-/* Reads the system of a file that can be read, also from records after its points. For other kinds of files *reference
- * is zero. Errors: MEMORY. */
+/* Reads the system of a LAS that can be read, also from records after its points, or of a PLY with "comment crs
+ * EPSG:…". For other kinds of files *reference is zero. Errors: MEMORY. */
 conic_status conic_georeference_read(conic_context *context, const char *path, conic_georeference *reference);
 /* Errors: MEMORY. */
 conic_status conic_georeference_copy(conic_context *context, const conic_georeference *from, conic_georeference *to);

@@ -180,11 +180,10 @@ static conic_status store_scan_block(e57_reader *reader, size_t n) {
     return conic_e57_wrong(reader->file, "too many points", reader->scan->records_offset);
   conic_status status = conic_builder_reserve_points(builder, builder->model->points.count + n);
   for (size_t i = 0; i < n && status == CONIC_OK; i++) {
-    if (is_set(reader, POINT_INVALID, i))
-      continue;
-    if (reader->drops_zeros && is_zero(reader, i))
-      reader->n_zeros++;
-    else
+    const int is_phantom = reader->drops_zeros && is_zero(reader, i), is_invalid = is_set(reader, POINT_INVALID, i);
+    reader->n_zeros += (uint64_t)(is_phantom && !is_invalid);
+    builder->model->n_unmeasured += (uint64_t)(is_phantom || is_invalid);
+    if (!is_phantom && !is_invalid)
       store_point(reader, i);
   }
   reader->n_done += n;

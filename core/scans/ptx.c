@@ -130,6 +130,7 @@ static conic_status take_layout(ptx_reader *reader, size_t n) {
 
 static conic_status take_place(ptx_reader *reader, const double values[MOST_VALUES], size_t n) {
   conic_status status = n == reader->n_values ? CONIC_OK : take_layout(reader, n);
+  reader->builder.model->n_unmeasured += (uint64_t)is_empty_place(values);
   if (status != CONIC_OK || is_empty_place(values))
     return status;
   if (conic_builder_points(&reader->builder) >= CONIC_MAX_POINTS)

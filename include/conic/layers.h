@@ -20,7 +20,8 @@ typedef struct conic_layers_options {
    * side. */
   int has_corner, is_unoriented;
   double corner[3];
-  double up[3]; /* the direction that points up, of any length; zero: unknown */
+  double up[3];  /* the direction that points up, of any length; zero: unknown */
+  uint32_t epsg; /* the code of the coordinate system; 0: unknown */
 } conic_layers_options;
 
 /* Clouds of 2048 samples, 1 GiB, half a sampling distance, cutoff 1.5. */

@@ -65,7 +65,7 @@ typedef struct conic_model {
   uint64_t follows_cutoff; /* 1: the axes were made of radii, by the cutoff that it was read with */
   uint32_t colors_are;     /* of conic_color_meaning: the file's colours of points or faces, decoded by now */
   uint32_t reserved_word;
-  uint64_t reserved[1];
+  uint64_t n_unmeasured; /* points that a scan calls so, and that are left out */
 } conic_model;
 
 typedef struct conic_read_options {
@@ -199,6 +199,7 @@ typedef struct conic_write_options {
   int circles;                 /* write `nx ny nz radius` instead of the axes: for splats with axes of equal length. A
                                   file with clip lines keeps the axes, which the lines need */
   float cutoff;                /* F_g, for that radius */
+  unsigned epsg;               /* the code of the positions' coordinate system, kept in a comment; 0: not known */
 } conic_write_options;
 
 /* Binary, positions as they come, axes, cutoff 1.5. */

@@ -88,7 +88,7 @@ class Model(ctypes.Structure):
         ("follows_cutoff", c_uint64),
         ("colors_are", c_uint32),
         ("reserved_word", c_uint32),
-        ("reserved", c_uint64 * 1),
+        ("n_unmeasured", c_uint64),
     ]
 
 

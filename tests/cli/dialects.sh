@@ -157,6 +157,89 @@ printf "${square}f 1 2\nf 1 2 3\n" > corners.obj
 facts corners.obj '^triangles +1$'
 warned 'fewer than 3 corners are left out: 1'
 
+printf "${square}f 1/0/0 2/-9/-9 3/1\nf -4 -3 -2\n" > wrong.obj
+facts wrong.obj '^triangles +2$'
+[[ $(grep -c 'so far: corners that name such do without' err) -eq 2 ]] || fail "corners of what there was not: $(cat err)"
+printf "${square}f 0 1 2\n" > wrong.obj
+run 3 info wrong.obj
+grep -q "a face's corner is v, v/t, v//n or v/t/n (line 9)" err || fail "$(cat err)"
+
+# Numbers of Visual C++, headers in any case, text without lines
+printf '0 0 0\n1.#QNAN -1.#IND00 1.#INF\n1.#SNAN 1 1\n1 2 3\n' > visual.xyz
+facts visual.xyz '^points +4$' '^bounds +0 0 0 to 1 2 3$'
+pcd() { # PERL THAT CHANGES THE FILE
+  printf '%s\n' '# .PCD v.7' 'VERSION .7' 'FIELDS x y z' 'SIZE 4 4 4' 'TYPE F F F' 'COUNT 1 1 1' 'WIDTH 3' 'HEIGHT 1' \
+    'POINTS 3' 'DATA ascii' '0 0 0' 'nan nan nan' '1 2 3' | perl -pe "$1"
+}
+pcd '' > usual.pcd
+pcd 's/FIELDS/COLUMNS/' > columns.pcd
+pcd 's/ascii/ASCII/' > upper.pcd
+pcd '$_ = lc unless /TYPE/' > lower.pcd
+for file in usual columns upper lower; do
+  facts $file.pcd '^points +2$' '^left out +1 points that were not measured$' '^bounds +0 0 0 to 1 2 3$'
+done
+run 0 layer usual.pcd -o a.lpc # where points are read some at a time
+tr '\n' '\r' < upper.stl > returns.stl
+tr '\n' ' ' < upper.stl > line.stl
+printf 'solid vertex 1 2\n%s' "$(sed 1d upper.stl)" > named.stl
+for file in returns line named; do
+  facts $file.stl '^points +3$' '^triangles +1$' '^bounds +0 0 0 to 1 1 0$'
+done
+{ echo '# by hand'; echo; cat unsaid.off; } > comment.off
+facts comment.off '^points +4$'
+
+# What measuring says is no colour, and what is no model
+{ printf 'ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n'
+  printf 'property float confidence\nproperty float intensity\nelement face 1\nproperty list uchar int vertex_indices\n'
+  printf 'end_header\n'
+  for i in 0 1 2 3; do echo "${places[$i]} 0.$i 0.$i"; done
+  echo 4 0 1 2 3; } > confidence.ply
+color confidence.ply 255 255 255
+echo '{"asset": {"version": "1.0"}, "geometricError": 1, "root": {"geometricError": 0}}' > tileset.json
+run 3 info tileset.json
+grep -q 'this is a tileset of 3D Tiles' err || fail "$(cat err)"
+file="$1/../shared/data/reports/scans/production_components.3mf"
+if [[ -f $file ]] && "$conic" --version | grep -q Assimp; then
+  run 3 info "$file"
+  grep -q 'production extension, which is not read' err || fail "$(cat err)"
+fi
+
+# The coordinate system goes along
+las() { # WELL-KNOWN TEXT
+  perl -e 'my $text = shift() . "\0"; my $at = 375 + 54 + length $text;
+    my $head = pack "a4vva8x8CCa32a32vvvVVCvVV5d12Q<Q<VQ<Q<15", "LASF", 0, 16, "", 1, 4, "", "", 1, 2026, 375, $at, 1, 6, 30,
+      (0) x 6, (1) x 3, (0) x 9, 0, 0, 0, 3, (0) x 15;
+    print $head, pack("va16vva32", 0, "LASF_Projection", 2112, length $text, ""), $text;
+    print pack "V3x18", $_, 2 * $_ % 3, 0 for 0 .. 2' "$1"
+}
+datum='DATUM["WGS_1984",SPHEROID["WGS84",6378137,298.257223563]],PRIMEM["Greenwich",0],UNIT["Degree",0.0174]'
+utm='PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",15],PARAMETER["scale_factor",0.9996],PARAMETER["false_easting",500000],PARAMETER["false_northing",0],UNIT["metre",1]'
+las "PROJCS[\"any\",GEOGCS[\"any\",$datum,AUTHORITY[\"EPSG\",\"4326\"]],$utm,AUTHORITY[\"EPSG\",\"32633\"]]" > plain.las
+las "COMPD_CS[\"any\",PROJCS[\"any\",GEOGCS[\"any\",$datum],$utm,AUTHORITY[\"EPSG\",\"32633\"]],VERT_CS[\"h\",VERT_DATUM[\"h\",2005],UNIT[\"m\",1],AUTHORITY[\"EPSG\",\"5703\"]]]" > compound.las
+las "PROJCS [\"WGS_1984_UTM_Zone_33N\", GEOGCS [\"any\",$datum],$utm]" > esri.las
+las "PROJCS[\"any\",GEOGCS[\"any\",$datum],${utm/0.9996/0.9999}]" > other.las
+for file in plain compound esri; do
+  facts $file.las '^system +EPSG:32633$'
+  run 0 prepare $file.las -o a.ply
+  run 0 layer a.ply -o a.lpc
+  run 0 layer plain.las a.ply -o two.lpc
+  run 0 cut a.lpc -o b.ply
+  run 0 cut b.ply -o a.las
+  run 0 cut a.las -o b.lpc
+  for made in a.ply a.lpc two.lpc b.ply a.las b.lpc; do
+    facts $made '^system +EPSG:32633$'
+  done
+  run 0 render b.lpc --camera top:0.1 -o map.tif
+  perl -0777 -ne 'exit(index($_, pack "v4", 3072, 0, 1, 32633) < 0)' map.tif || fail "$file: no system in a map of its cloud"
+done
+facts other.las '^system +one without an EPSG code$'
+for words in 'prepare other.las -o a.ply' 'layer other.las -o a.lpc' 'octree plain.las -o a.cot'; do
+  run 0 $words
+  warned 'coordinate system.* is left out'
+done
+run 0 layer plain.las other.las -o a.lpc
+grep -q 'not all of one coordinate system' err || fail "$(cat err)"
+
 # Cut PLY and PTX
 head -c -8 bytes.ply > cut.ply # within the face
 facts cut.ply '^points +4$' '^fields +positions, colors$'

@@ -113,6 +113,9 @@ printf 'v %s\n' '0 0 0' '1 0 0' '1 0 1' '0 0 1' '.5 .5 .5' '4 0 0' '4 0 1' > ten
 printf 'f %s\n' '1 5 2' '2 5 3' '3 5 4' '4 5 1' '2 3 7 6' >> tent.obj
 printf 'v -1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' > triangle.obj
 printf '%s\n' '0 0 0' '1e30 0 0' '0 1e30 0' > far.xyz
+printf '%s\n' 2 1 '0 0 0' '1 0 0' '0 1 0' '0 0 1' '1 0 0 0' '0 1 0 0' '0 0 1 0' '0 0 0 1' '1 2 3 0.5' '0 0 0 0' > scan.ptx
+printf '%s\n' ply 'format ascii 1.0' 'comment crs EPSG:32633' 'element vertex 3' 'property float x' 'property float y' \
+  'property float z' end_header '1 2 3' '1 3 3' '2 3 3' > placed.ply
 for i in {1..60}; do echo "$i 0 0"; done > wire.xyz
 printf '%s\n' '0 0 0' '1 0 0' '0 1 0' '1 1 0' '1 1 0' 'nan 0 0' > odd.xyz
 
@@ -215,6 +218,8 @@ write bench-chosen bench bench knot.cot --error 2 --size 64x48 --threads 1 --rep
 write info info_model info knot.ply --check
 write info-mesh info_model info triangle.obj
 write info-far info_model info far.xyz --check
+write info-scan info_model info scan.ptx
+write info-placed info_model info placed.ply
 write info-image info_image info knot.exr --check
 write info-octree info_octree info knot.cot --check
 write info-hybrid info_hybrid info tent.chy --check
@@ -245,6 +250,7 @@ run 0 help --format json
 cp out runs/help.json
 echo help > runs/help.definition
 "$python" "$1/tests/cli/hierarchies_make.py" octrees 500
+sed -i 's/^{/{"srs": {"authority": "EPSG", "horizontal": "32633"}, /' octrees/ept/ept.json
 write info-hierarchy info_hierarchy info octrees/ept/ept.json --check
 # What no run above writes, or not on every machine.
 unseen="device.name device.platform device.version device.driver device.is_cpu device.has_double
@@ -257,6 +263,8 @@ if [[ $has_zstd -eq 1 ]]; then
   write merge layer merge knot.lpc colored.lpc -o merged.lpc
   write layer-kept layer layer knot.ply -o kept.lpc --keep x --up z --resumable
   write info-kept info_layers info kept.lpc
+  run 0 layer placed.ply -o placed.lpc
+  write info-placed-layers info_layers info placed.lpc
   write render-layers render_layers render knot.lpc -o layers.exr --error 4 --size 256x256
   write render-progressive render_layers render knot.lpc -o layers.exr --error 4 --size 64x64 --progressive pictures
   write info-layers info_layers info knot.lpc --check

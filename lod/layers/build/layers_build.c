@@ -33,7 +33,7 @@ CONIC_DEFINE_OPTIONS(conic_layers_options, .cloud_size = 2048, .memory_bytes = U
 static int are_options_sound(const conic_layers_options *options) {
   return options->cloud_size >= LEAST_CLOUD && options->cloud_size <= MOST_CLOUD && options->quantum > 0.0 &&
          options->quantum < 1e15 && options->cutoff > 0.0f && options->cutoff < 1e3f &&
-         conic_dot(options->up, options->up) < 1e30;
+         conic_dot(options->up, options->up) < 1e30 && options->epsg <= UINT16_MAX;
 }
 
 /* What the program itself takes, its libraries and what reads the samples; and what building takes at least. */
@@ -274,6 +274,7 @@ static conic_status make_plan(conic_layers_builder *builder) {
   double up[3] = {builder->options.up[0], builder->options.up[1], builder->options.up[2]};
   for (int axis = 0; axis < 3 && conic_normalize(up); axis++)
     header->up[axis] = (float)up[axis];
+  header->epsg = builder->options.epsg;
   header->near_z = conic_near_of_box(header->low, header->high);
   builder->plan = (conic_layers_plan){.context = builder->context,
                                       .bits = header->bits,

@@ -186,12 +186,15 @@ void conic_layers_continue(const conic_layers *layers, conic_layers_options *opt
   memcpy(options->corner, header->origin, sizeof options->corner);
   for (int axis = 0; axis < 3; axis++)
     options->up[axis] = (double)header->up[axis];
+  options->epsg = header->epsg;
   options->is_unoriented |= (header->flags & CONIC_LAYERS_UNORIENTED) != 0;
   options->keeps_all |= conic_layers_schema_find(&header->schema, CONIC_LAYERS_AXES) >= 0;
 }
 
 conic_status conic_layers_find_georeference(const conic_layers *layers, conic_georeference *reference) {
   memset(reference, 0, sizeof *reference);
+  const unsigned epsg = layers->header.epsg;
   return layers->octree ? conic_georeference_copy(layers->context, &layers->octree->hierarchy->reference, reference)
+         : epsg         ? conic_georeference_of_epsg(layers->context, epsg, reference)
                         : CONIC_OK;
 }

@@ -15,29 +15,15 @@ static const double farthest = 1e15;
 #define IN_HEADER(member) CONIC_FILE_FIELD(conic_layers_header, member)
 #define IN_ENTRY(member) CONIC_FILE_FIELD(conic_layers_entry, member)
 
-static const conic_file_field header_fields[] = {IN_HEADER(version),
-                                                 IN_HEADER(flags),
-                                                 IN_HEADER(n_samples),
-                                                 IN_HEADER(n_clouds),
-                                                 IN_HEADER(n_levels),
-                                                 IN_HEADER(bits),
-                                                 IN_HEADER(cloud_size),
-                                                 IN_HEADER(origin),
-                                                 IN_HEADER(quantum),
-                                                 IN_HEADER(low),
-                                                 IN_HEADER(high),
-                                                 IN_HEADER(spacing),
-                                                 IN_HEADER(splat_radius),
-                                                 IN_HEADER(near_z),
-                                                 IN_HEADER(position_bytes),
-                                                 IN_HEADER(normal_bytes),
-                                                 IN_HEADER(color_bytes),
-                                                 IN_HEADER(file_bytes),
-                                                 IN_HEADER(index_sum),
-                                                 IN_HEADER(most_samples),
-                                                 IN_HEADER(most_bytes),
-                                                 IN_HEADER(schema.n),
-                                                 IN_HEADER(up)};
+static const conic_file_field header_fields[] = {
+    IN_HEADER(version),      IN_HEADER(flags),        IN_HEADER(n_samples),
+    IN_HEADER(n_clouds),     IN_HEADER(n_levels),     IN_HEADER(bits),
+    IN_HEADER(cloud_size),   IN_HEADER(origin),       IN_HEADER(quantum),
+    IN_HEADER(low),          IN_HEADER(high),         IN_HEADER(spacing),
+    IN_HEADER(splat_radius), IN_HEADER(near_z),       IN_HEADER(position_bytes),
+    IN_HEADER(normal_bytes), IN_HEADER(color_bytes),  IN_HEADER(file_bytes),
+    IN_HEADER(index_sum),    IN_HEADER(most_samples), IN_HEADER(most_bytes),
+    IN_HEADER(schema.n),     IN_HEADER(up),           IN_HEADER(epsg)};
 
 static const conic_file_field entry_fields[] = {
     IN_ENTRY(key),      IN_ENTRY(offset), IN_ENTRY(sum),     IN_ENTRY(n_place), IN_ENTRY(n_bytes), IN_ENTRY(n_samples),
@@ -97,6 +83,8 @@ static const char *check_lengths(const conic_layers_header *header) {
       return "the box is out of range";
   if (!(header->quantum > 0.0 && edge <= 4.0 * farthest))
     return "the quantum is out of range";
+  if (header->epsg > UINT16_MAX)
+    return "the code of its coordinate system is out of range";
   for (int axis = 0; axis < 3; axis++)
     if (!is_finite_within((double)header->up[axis], 1.001))
       return "what points up is no direction";

@@ -34,7 +34,8 @@ typedef struct conic_layers_header {
   uint32_t most_samples; /* of the largest cloud */
   uint32_t most_bytes;   /* of the largest cloud, compressed */
   conic_layers_schema schema;
-  float up[3]; /* unit: what points up; zero: it is not known */
+  float up[3];   /* unit: what points up; zero: it is not known */
+  uint32_t epsg; /* the code of the coordinate system; 0: it is not known */
 } conic_layers_header;
 
 /* A cloud, and the node of the tree that has it. Clouds are numbered in the order of the file: by level, then by key.

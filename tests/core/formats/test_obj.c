@@ -117,8 +117,6 @@ static void test_failures(void) {
       {"f 1 2 -0\n", "corner is", "line 4"},
       {"f 1 2 1.5\n", "corner is", "line 4"},
       {"f 1 2 nan\n", "corner is", "line 4"},
-      {"f 1/1 2/1 3/-1\n", "index -1, but there are only 0 texture coordinates so far", "line 4"},
-      {"f 1//-1 2 3\nvn 0 0 1\n", "index -1, but there are only 0 normals so far", "line 4"},
       {"f 1 2 3 \\\n1 2 5\n", "index 5, but there are only 3 vertices", "line 5"},
   };
   for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
