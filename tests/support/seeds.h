@@ -126,6 +126,11 @@ static inline void seeds_all_ply(seed_set *set) {
             "property float y\nproperty float z\nproperty float s\nproperty double t\nelement face 2\n"
             "property list uchar float texcoord\nproperty list uchar int vertex_indices\nproperty short texnumber\n",
             "ffffd", 3, "cls", 2, 1);
+  seeds_ply(set,
+            "comment conic 0.6.0\ncomment crs EPSG:32633\nelement vertex 3\nproperty float x\nproperty float y\n"
+            "property float z\nelement face 2\nproperty list uchar int vertex_indices\nproperty double red\n"
+            "property double green\nproperty double blue\n",
+            "fff", 3, "lddd", 2, 0);
   seeds_text(
       set, "ply", "ply",
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
@@ -148,6 +153,7 @@ static inline void seeds_all_text(seed_set *set) {
   seeds_text(set, "obj", "obj",
              "# by hand\nmtllib a.mtl\nv 0 0 0\nv 1 0 0 1 0.5 0\nv 1 1 \\\n 0\nv 0 1 0 1\nvt 0.5 0.5\nvn 0 0 1\n"
              "f 1/1/1 2/1/1 3/1/1\nf -4//-1 3//1 4//1\nf 1 2 3 4\no thing\ns off\n");
+  seeds_text(set, "obj", "obj", "v 0 0 0 255 0 9\nv 1 0 0\nv 1 1 0 0.5 nan 1\nf 1/0/0 2/-9/-9 3\n");
   seeds_text(set, "obj", "obj", "v 589500.5 231300.25 1e7\nv 589501 231300 1e7\nv 589501 231301 1e7\nf 1 2 3\n");
   seeds_text(
       set, "obj", "obj",
@@ -164,6 +170,7 @@ static inline void seeds_all_text(seed_set *set) {
   seeds_text(set, "xyz", "asc", "//X Y Z R G B I\n2\n1 2 3 4 5 6 7\n1,2,3;4,5,6 7;\n1\n9 8 7 6 5 4 3\n");
   seeds_text(set, "xyz", "xyz", "1 2 3 255 0 4 -7 0 0 1\n4 5 6 7 8 9 10 1 0 0\n");
   seeds_text(set, "xyz", "csv", "X,Y,Z\n1,2,3\n1,2\n4,,6\n");
+  seeds_text(set, "xyz", "xyz", "0 0 0\n1.#QNAN -1.#IND00 1.#INF\n1.#SNAN 1 1\n");
   seeds_text(set, "xyz", "xyz", "0 0 0 65535 256 1 0 0 1\n1 2 3 7 8 9 0 1 0\n");
   seeds_text(
       set, "camera", "json",
@@ -215,6 +222,8 @@ static inline void seeds_all_pcd(seed_set *set) {
              "# .PCD v0.7\nFIELDS z x y rgba label\nSIZE 8 4 4 4 2\nTYPE F F F F U\nWIDTH 2\nHEIGHT 2\nDATA ascii\n"
              "1e7 2 3 4.2108e+06 7\n4 5 nan 4.808e+06 1\n\n0 0 0 0 0\n-1 +2 .5 1 2\n");
   seeds_text(set, "pcd", "pcd",
+             "columns x y z\nsize 4 4 4\ntype F F F\npoints 3\ndata ASCII\n1 2 3\nnan nan nan\n4 5 6\n");
+  seeds_text(set, "pcd", "pcd",
              "FIELDS x y z r g b\nSIZE 4 4 4 1 1 1\nTYPE I I F U U U\nPOINTS 1\nDATA ascii\n1 2 3 255 0 9\n");
 }
 
@@ -232,6 +241,11 @@ static inline void seeds_all_references(seed_set *set) {
   memcpy(file + 227 + 54, keys, sizeof keys);
   seeds_add(set, "georeference", "las", 1, file, sizeof file);
   seeds_text(set, "georeference", "wkt", text);
+  seeds_text(
+      set, "georeference", "wkt",
+      "PROJCS [\"WGS_1984_UTM_Zone_33N\",GEOGCS[\"any\",DATUM[\"WGS_1984\"]],PROJECTION[\"Transverse_Mercator\"],"
+      "PARAMETER[\"latitude_of_origin\",0],PARAMETER[\"central_meridian\",15],PARAMETER[\"scale_factor\",0.9996],"
+      "PARAMETER[\"false_easting\",500000],PARAMETER[\"false_northing\",0],UNIT[\"metre\",1]]");
 }
 
 static inline void seeds_all_las(seed_set *set) {
