@@ -176,22 +176,21 @@ static void tell_up(conic_context *context, const char *path, const conic_model 
 /* What decides a picture and shows in no number. */
 static conic_status tell_meanings(conic_context *context, const char *path, const conic_model *model,
                                   conic_facts *facts) {
-  static const char *const colors[] = {
-      [CONIC_COLORS_NONE] = "none",
-      [CONIC_COLORS_DISPLAY] = "fractions of 1, as displays take them (sRGB); --colors linear says otherwise",
-      [CONIC_COLORS_LINEAR] = "fractions of 1, linear",
-      [CONIC_COLORS_CODES] = "whole codes, as displays take them (sRGB)",
-      [CONIC_COLORS_TRAINED] = "harmonics of Gaussians"};
-  static const char *const words[] = {"none", "display", "linear", "codes", "trained"};
+  static const char *const colors[][2] = {
+      [CONIC_COLORS_NONE] = {"none", ""},
+      [CONIC_COLORS_DISPLAY] = {"display", "fractions of 1, sRGB-encoded; --colors linear says otherwise"},
+      [CONIC_COLORS_LINEAR] = {"linear", "fractions of 1, linear"},
+      [CONIC_COLORS_CODES] = {"codes", "codes, sRGB-encoded"},
+      [CONIC_COLORS_TRAINED] = {"trained", "harmonics of Gaussians"}};
   const int is_metric = model->kind == CONIC_MODEL_GLTF || model->kind == CONIC_MODEL_GLB ||
                         model->kind == CONIC_MODEL_E57 || model->kind == CONIC_MODEL_PTX;
   conic_georeference reference;
   conic_status status = conic_georeference_read(context, path, &reference);
   if (status != CONIC_OK)
     return status;
-  CONIC_ADD_FACTS(facts, conic_fact_text(CONIC_FACT_TEXT, "colors", "%s", words[model->colors_are]));
+  CONIC_ADD_FACTS(facts, conic_fact_text(CONIC_FACT_TEXT, "colors", "%s", colors[model->colors_are][0]));
   if (model->colors_are)
-    CONIC_ADD_FACTS(facts, CONIC_LINE("colours", "%s", colors[model->colors_are]));
+    CONIC_ADD_FACTS(facts, CONIC_LINE("colours", "%s", colors[model->colors_are][1]));
   if (is_metric)
     CONIC_ADD_FACTS(facts, conic_fact_text(CONIC_FACT_TEXT, "unit", "m"), CONIC_LINE("unit", "metres, by the format"));
   conic_facts_add_system(facts, &reference);

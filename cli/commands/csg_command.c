@@ -58,13 +58,8 @@ static int make_solid(void *cookie) {
               operation_names[job->operation]);
     status = CONIC_ERROR_INPUT;
   }
-  conic_write_options options;
-  conic_write_options_init(&options);
-  options.cutoff = job->estimate.cutoff;
   if (status == CONIC_OK)
-    status = cli_points_find_epsg(job->base.session, job->inputs[0], 0, &options.epsg);
-  if (status == CONIC_OK)
-    status = conic_splats_write(context, job->base.output, &job->result, &options);
+    status = cli_points_write(job->base.session, job->inputs[0], job->base.output, job->estimate.cutoff, &job->result);
   cli_build_end_stage(&stages[WRITE], start);
   return cli_exit_of(status);
 }

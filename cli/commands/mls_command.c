@@ -257,12 +257,8 @@ static int write_points(mls_job *job) {
                      job->report.outcomes[CONIC_SURFACE_NO_MINIMUM]);
   if (is_by_cells(job)) /* the output is written already */
     return CLI_DONE;
-  conic_write_options options;
-  conic_write_options_init(&options);
-  conic_status status = cli_points_find_epsg(job->base.session, job->base.input, 0, &options.epsg);
-  if (status == CONIC_OK)
-    status = conic_splats_write(job->base.session->context, job->base.output, &job->result, &options);
-  int exit_code = cli_exit_of(status);
+  int exit_code =
+      cli_exit_of(cli_points_write(job->base.session, job->base.input, job->base.output, 1.5f, &job->result));
   cli_build_end_stage(&job->base.stages[WRITE], start);
   return exit_code;
 }

@@ -105,13 +105,8 @@ static conic_status find_axes(prepare_job *job) {
 }
 
 static int write_splats(prepare_job *job) {
-  conic_write_options options;
-  conic_write_options_init(&options);
-  options.cutoff = job->estimate.cutoff;
-  conic_status status = cli_points_find_epsg(job->base.session, job->base.input, 0, &options.epsg);
-  if (status == CONIC_OK)
-    status = conic_splats_write(job->base.session->context, job->base.output, &job->model.points, &options);
-  return cli_exit_of(status);
+  return cli_exit_of(
+      cli_points_write(job->base.session, job->base.input, job->base.output, job->estimate.cutoff, &job->model.points));
 }
 
 static void report_prepared(cli_json *json, const void *cookie) {

@@ -55,6 +55,15 @@ conic_status cli_points_find_epsg(cli_session *session, const char *path, int ke
   return status;
 }
 
+conic_status cli_points_write(cli_session *session, const char *input, const char *output, float cutoff,
+                              const conic_splats *points) {
+  conic_write_options options;
+  conic_write_options_init(&options);
+  options.cutoff = cutoff;
+  conic_status status = cli_points_find_epsg(session, input, 0, &options.epsg);
+  return status == CONIC_OK ? conic_splats_write(session->context, output, points, &options) : status;
+}
+
 /* A hierarchy gives only places and colours; options that need more are refused, not ignored. */
 static conic_status stream_hierarchy(conic_context *context, const char *path, const conic_read_options *options,
                                      conic_batch_receiver *receive, void *cookie) {

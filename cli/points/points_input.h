@@ -21,6 +21,10 @@ conic_status cli_points_find_reference(conic_context *context, const char *path,
  * `keeps_none`, that any does. Errors: as above. */
 conic_status cli_points_find_epsg(cli_session *session, const char *path, int keeps_none, unsigned *epsg);
 
+/* Writes what was made of the input as a PLY, which keeps the input's system by its code. Errors: as above, IO. */
+conic_status cli_points_write(cli_session *session, const char *input, const char *output, float cutoff,
+                              const conic_splats *points);
+
 /* As conic_model_stream. */
 conic_status cli_points_stream(conic_context *context, const char *path, const conic_read_options *options,
                                conic_batch_receiver *receive, void *cookie);

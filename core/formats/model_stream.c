@@ -62,7 +62,7 @@ static conic_status read_whole_stream(streaming *s, conic_input *input) {
 static conic_status pass_twice(streaming *s, conic_input *input, const char *path, unsigned raw_kind) {
   conic_input again;
   if (s->kind == CONIC_MODEL_XYZ || s->kind == CONIC_MODEL_PCD)
-    raw_kind = conic_raw_kind_of(s->options);
+    raw_kind = conic_raw_kind_of(s->options->colors_are);
   conic_status status = pass(s, input, see_colors, s);
   if (status == CONIC_OK)
     status = conic_raw_colors_scale(s->context, &s->range, raw_kind, &s->scale);

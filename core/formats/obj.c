@@ -346,7 +346,8 @@ conic_status conic_obj_read(conic_input *input, const conic_read_options *option
   if (status == CONIC_OK)
     status = gather_normals(&reader);
   if (status == CONIC_OK)
-    status = conic_raw_colors_decode(input->context, model, conic_raw_kind_of(options));
+    status = conic_raw_colors_decode(input->context, &model->points, conic_raw_kind_of(options->colors_are),
+                                     &model->colors_are);
   conic_memory_release_these(input->context, reader.normals, reader.corners);
   return status;
 }

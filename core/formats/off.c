@@ -12,7 +12,6 @@ typedef struct off_reader {
   conic_builder builder;
   conic_face_colors colors;
   int has_normals, has_coordinates, is_homogeneous; /* as the first word says */
-  int has_face_colors;
   uint64_t n_vertices, n_faces;
 } off_reader;
 
@@ -104,13 +103,9 @@ static conic_status read_vertices(off_reader *reader, int *is_done) {
 static conic_status end_face(off_reader *reader, size_t first, const double *numbers, int n) {
   conic_context *context = reader->input->context;
   conic_model *model = reader->builder.model;
-  const double none[3] = {NAN, NAN, NAN};
   conic_status status = CONIC_OK;
-  reader->has_face_colors |= n >= 3;
-  if (!model->points.color[0])
-    status = conic_face_colors_take(context, &reader->colors, model, first, n >= 3 ? numbers : none);
-  for (size_t i = first; model->faces && i < model->n_triangles && status == CONIC_OK; i++)
-    status = conic_faces_add(context, model->faces, NULL, NULL);
+  if (!model->points.color[0] && n >= 3)
+    status = conic_face_colors_take(context, &reader->colors, model, first, numbers);
   conic_polygon_settle(model, first);
   return status;
 }
@@ -178,15 +173,10 @@ conic_status conic_off_read(conic_input *input, const conic_read_options *option
   if (status == CONIC_OK)
     status = read_vertices(&reader, &is_done);
   if (status == CONIC_OK && model->points.color[0])
-    status = conic_raw_colors_decode(input->context, model, conic_raw_kind_of(options));
-  else if (status == CONIC_OK && options->keeps_faces)
-    status = conic_faces_create(input->context, &model->faces);
+    status = conic_raw_colors_decode(input->context, &model->points, conic_raw_kind_of(options->colors_are),
+                                     &model->colors_are);
   if (status == CONIC_OK)
     status = read_faces(&reader, is_done);
-  if (!reader.has_face_colors) {
-    conic_faces_destroy(input->context, model->faces);
-    model->faces = NULL;
-    conic_face_colors_finish(&reader.builder, &reader.colors, 0, CONIC_ERROR_INPUT); /* lets go of them */
-  }
-  return conic_face_colors_finish(&reader.builder, &reader.colors, conic_raw_kind_of(options), status);
+  return conic_face_colors_finish(&reader.builder, &reader.colors, conic_raw_kind_of(options->colors_are),
+                                  options->keeps_faces, status);
 }

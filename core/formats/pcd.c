@@ -338,7 +338,8 @@ conic_status conic_pcd_read(conic_input *input, const conic_read_options *option
   if (status == CONIC_OK)
     status = read_points(reader, options);
   if (status == CONIC_OK && !delivery)
-    status = conic_raw_colors_decode(input->context, model, conic_raw_kind_of(options));
+    status = conic_raw_colors_decode(input->context, &model->points, conic_raw_kind_of(options->colors_are),
+                                     &model->colors_are);
   if (status == CONIC_OK)
     status = conic_builder_deliver(&reader->builder, 1);
   conic_memory_release(input->context, reader);

@@ -58,13 +58,8 @@ typedef struct conic_ply_layout {
 } conic_ply_layout;
 
 /* Whether the scale of its colours is told by the whole file (core/splats/raw_colors.h): those of more than 8 bits that
- * are not linear. And of which conic_raw_kind they are. */
+ * are not linear. */
 int conic_ply_layout_has_codes(const conic_ply_layout *layout);
-static inline unsigned conic_ply_raw_kind(conic_color_meaning meaning) {
-  return meaning == CONIC_COLORS_CODES    ? 0u
-         : meaning == CONIC_COLORS_LINEAR ? (unsigned)CONIC_RAW_FRACTIONS | (unsigned)CONIC_RAW_LINEAR
-                                          : (unsigned)CONIC_RAW_FRACTIONS;
-}
 /* What colours of that type mean: in conic's own files, fractions are linear. */
 conic_color_meaning conic_ply_colors_are(int is_conics, const conic_read_options *options, conic_ply_type type);
 

@@ -134,9 +134,10 @@ conic_status conic_ply_read_faces(conic_ply_source *source, const conic_ply_head
     if (status == CONIC_OK)
       status = deliver_faces(builder, 0);
   }
-  const unsigned kind = conic_ply_raw_kind(conic_ply_colors_are(header->is_conics, options, faces.texture.color_type));
+  const unsigned kind = conic_raw_kind_of(conic_ply_colors_are(header->is_conics, options, faces.texture.color_type));
   conic_status colored =
-      conic_face_colors_finish(builder, &faces.texture.colors, kind, source->is_cut ? CONIC_OK : status);
+      conic_face_colors_finish(builder, &faces.texture.colors, kind, options->keeps_faces && !builder->delivery,
+                               source->is_cut ? CONIC_OK : status);
   if (colored == CONIC_OK)
     colored = deliver_faces(builder, 1);
   return status == CONIC_OK || colored != CONIC_OK ? colored : status;

@@ -314,7 +314,7 @@ static conic_status read_body(conic_input *input, const conic_read_options *opti
   if (status == CONIC_OK)
     status = conic_ply_layout_choose_fields(input, header, vertices, options, &builder, &reader->layout);
   if (status == CONIC_OK && keeps_coordinates &&
-      (reader->layout.has_coordinates || conic_ply_has_texture_corners(header) || conic_ply_has_face_colors(header)))
+      (reader->layout.has_coordinates || conic_ply_has_texture_corners(header)))
     status = conic_ply_begin_textures(input, header, model);
   if (status == CONIC_OK)
     status = read_elements(reader, header, vertices, options);
@@ -323,7 +323,8 @@ static conic_status read_body(conic_input *input, const conic_read_options *opti
   if (!model->colors_are)
     model->colors_are = reader->layout.colors_are;
   if (status == CONIC_OK && reader->layout.keeps_codes && !delivery)
-    status = conic_raw_colors_decode(input->context, model, conic_ply_raw_kind(reader->layout.colors_are));
+    status = conic_raw_colors_decode(input->context, &model->points, conic_raw_kind_of(reader->layout.colors_are),
+                                     &model->colors_are);
   if (at_end)
     builder.delivery = at_end;
   if (status == CONIC_OK)
@@ -370,7 +371,7 @@ conic_status conic_ply_look(conic_input *input, const conic_read_options *option
     *shape = (conic_model_shape){.can_part = status == CONIC_OK,
                                  .is_raw = !(layout.fields & (CONIC_SPLATS_TANGENTS | CONIC_SPLATS_NORMALS)),
                                  .needs_survey = conic_ply_layout_has_codes(&layout),
-                                 .raw_kind = conic_ply_raw_kind(layout.colors_are),
+                                 .raw_kind = conic_raw_kind_of(layout.colors_are),
                                  .n_points = vertices->count < n_there ? vertices->count : n_there,
                                  .fields = has_faces(&header) || layout.has_harmonics ? 0 : layout.fields};
   }

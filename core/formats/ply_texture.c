@@ -26,14 +26,6 @@ static int find_colors(const conic_ply_header *header, const conic_ply_element *
   return 0;
 }
 
-int conic_ply_has_face_colors(const conic_ply_header *header) {
-  int color[3];
-  for (size_t i = 0; i < header->n_elements; i++)
-    if (find_colors(header, &header->elements[i], color))
-      return 1;
-  return 0;
-}
-
 /* With one texture there is nothing to choose. */
 static int find_picture(const conic_ply_header *header, const conic_ply_element *element) {
   return header->textures.count > 1 ? find(header, element, "texnumber", 0) : -1;
@@ -64,7 +56,7 @@ conic_status conic_ply_begin_textures(const conic_input *input, const conic_ply_
 
 /* If any triangle of the model is noted, all are. */
 static int has_notes(const conic_ply_header *header) {
-  int has = conic_ply_has_texture_corners(header) || conic_ply_has_face_colors(header);
+  int has = conic_ply_has_texture_corners(header);
   for (size_t i = 0; i < header->n_elements; i++)
     has |= find_picture(header, &header->elements[i]) >= 0;
   return has;

@@ -15,9 +15,8 @@ typedef struct conic_ply_face_texture {
   conic_face_colors colors;
 } conic_ply_face_texture;
 
-/* Whether faces have their own texture coordinates, or colours that count. */
+/* Whether faces have their own texture coordinates. */
 int conic_ply_has_texture_corners(const conic_ply_header *header);
-int conic_ply_has_face_colors(const conic_ply_header *header);
 
 /* Gives the model faces, with the textures that the header names. Errors: INPUT, MEMORY. */
 conic_status conic_ply_begin_textures(const conic_input *input, const conic_ply_header *header, conic_model *model);

@@ -48,14 +48,11 @@ static conic_status add_corner(stl_reader *reader, const double place[3]) {
 
 /* Notes the triangles from `first` on, which have a colour; null: none. */
 static conic_status end_face(stl_reader *reader, size_t first, const double *color) {
-  static const double none[3] = {NAN, NAN, NAN};
   conic_model *model = reader->builder.model;
   conic_status status = CONIC_OK;
   reader->n_corners = 0;
-  if (reader->is_colored)
-    status = conic_face_colors_take(reader->input->context, &reader->colors, model, first, color ? color : none);
-  for (size_t i = first; model->faces && i < model->n_triangles && status == CONIC_OK; i++)
-    status = conic_faces_add(reader->input->context, model->faces, NULL, NULL);
+  if (color && reader->is_colored)
+    status = conic_face_colors_take(reader->input->context, &reader->colors, model, first, color);
   return status;
 }
 
@@ -203,16 +200,10 @@ conic_status conic_stl_read(conic_input *input, const conic_read_options *option
   const int is_binary = status == CONIC_OK && !is_text(input);
   if (status == CONIC_OK && is_binary && conic_input_available(input) < HEAD_BYTES)
     status = conic_input_wrong(input, "the file ends within the header");
-  if (status == CONIC_OK && is_binary && options->keeps_faces)
-    status = conic_faces_create(input->context, &model->faces);
   if (status == CONIC_OK)
     status = is_binary ? read_binary(&reader) : read_text(&reader);
   if (status == CONIC_OK && model->n_triangles == 0)
     status = conic_input_wrong(input, "the file ends without a face");
-  if (status == CONIC_OK && model->faces && !reader.is_colored) {
-    conic_faces_destroy(input->context, model->faces);
-    model->faces = NULL;
-  }
   conic_memory_release(input->context, reader.slots.slots);
-  return conic_face_colors_finish(&reader.builder, &reader.colors, CONIC_RAW_FRACTIONS, status);
+  return conic_face_colors_finish(&reader.builder, &reader.colors, CONIC_RAW_FRACTIONS, options->keeps_faces, status);
 }

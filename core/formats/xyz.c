@@ -421,7 +421,8 @@ conic_status conic_xyz_read(conic_input *input, const conic_read_options *option
   if (status == CONIC_OK)
     status = check_counts(&reader, is_again);
   if (status == CONIC_OK && !delivery)
-    status = conic_raw_colors_decode(input->context, model, conic_raw_kind_of(options));
+    status = conic_raw_colors_decode(input->context, &model->points, conic_raw_kind_of(options->colors_are),
+                                     &model->colors_are);
   return status == CONIC_OK ? conic_builder_deliver(&reader.builder, 1) : status;
 }
 

@@ -151,33 +151,21 @@ static double find_parameter(const char *at, const char *end, const char *name) 
   return NAN;
 }
 
-/* A zone of UTM in metres, whose numbers allow no doubt. */
+/* A zone of UTM on WGS 84 or NAD83, whose numbers allow no doubt. */
 static unsigned find_utm(const char *open, const char *end) {
-  static const struct {
-    const char *datum;
-    unsigned north, south, first, last; /* codes are these and the zone's number */
-  } systems[] = {{"wgs 84", 32600, 32700, 1, 60},
-                 {"wgs84", 32600, 32700, 1, 60},
-                 {"wgs 1984", 32600, 32700, 1, 60},
-                 {"north american datum 1983", 26900, 0, 1, 23},
-                 {"north american 1983", 26900, 0, 1, 23},
-                 {"nad83", 26900, 0, 1, 23},
-                 {"etrs89", 25800, 0, 28, 38},
-                 {"etrs 1989", 25800, 0, 28, 38}};
-  double meridian = find_parameter(open, end, "central_meridian"), zone = (meridian + 183.0) / 6.0;
-  double north = find_parameter(open, end, "false_northing");
+  const double zone = (find_parameter(open, end, "central_meridian") + 183.0) / 6.0;
+  const double north = find_parameter(open, end, "false_northing");
+  const int is_wgs =
+      has_words(open, end, "wgs 84") || has_words(open, end, "wgs84") || has_words(open, end, "wgs 1984");
   if (!has_words(open, end, "transverse mercator") || !has_words(open, end, "met") || has_words(open, end, "foot") ||
       find_parameter(open, end, "false_easting") != 500000.0 || find_parameter(open, end, "scale_factor") != 0.9996 ||
-      find_parameter(open, end, "latitude_of_origin") != 0.0 || !(zone >= 1.0 && zone <= 60.0) || zone != floor(zone) ||
-      (north != 0.0 && north != 10000000.0) || has_words(open, end, "harn") || has_words(open, end, "csrs"))
+      find_parameter(open, end, "latitude_of_origin") != 0.0 || !(zone >= 1.0 && zone <= 60.0) || zone != floor(zone))
     return 0;
-  for (size_t i = 0; i < sizeof systems / sizeof *systems; i++)
-    if (has_words(open, end, systems[i].datum))
-      return zone < systems[i].first || zone > systems[i].last ? 0
-             : north == 0.0                                    ? systems[i].north + (unsigned)zone
-             : systems[i].south                                ? systems[i].south + (unsigned)zone
-                                                               : 0;
-  return 0;
+  if (is_wgs)
+    return north == 0.0 ? 32600 + (unsigned)zone : north == 10000000.0 ? 32700 + (unsigned)zone : 0;
+  const int is_nad83 =
+      has_words(open, end, "north american datum 1983\"") || has_words(open, end, "north american 1983\"");
+  return is_nad83 && north == 0.0 && zone <= 23.0 ? 26900 + (unsigned)zone : 0;
 }
 
 unsigned conic_georeference_find_epsg(const char *text, size_t n_bytes) {

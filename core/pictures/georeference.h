@@ -17,7 +17,7 @@ typedef struct conic_georeference {
 /* A system from its code, 1 to 65535. Errors: MEMORY. */
 conic_status conic_georeference_of_epsg(conic_context *context, unsigned epsg, conic_georeference *reference);
 /* The code of the horizontal system in well-known text of either version, or in "EPSG:26910"; of text without codes
- * that of a zone of UTM on WGS 84, NAD83 or ETRS89, by its numbers. 0: it names none. */
+ * that of a zone of UTM on WGS 84 or NAD83, by its numbers. 0: it names none. */
 unsigned conic_georeference_find_epsg(const char *text, size_t n_bytes);
 /* Reads the head of a LAS: its header and the records before the points, as far as n_bytes hold them. Without a system
  * *reference is zero. Errors: MEMORY. */

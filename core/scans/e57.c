@@ -322,7 +322,8 @@ static conic_status read_opened(e57_reader *reader, const conic_read_options *op
               "%s: %llu points at 0 0 0 of their scans were not measured, and are left out", reader->file->name,
               (unsigned long long)reader->n_zeros);
   if (status == CONIC_OK && !reader->builder.delivery)
-    status = conic_raw_colors_decode(reader->file->context, reader->builder.model, 0);
+    status = conic_raw_colors_decode(reader->file->context, &reader->builder.model->points, 0,
+                                     &reader->builder.model->colors_are);
   return status == CONIC_OK ? conic_builder_deliver(&reader->builder, 1) : status;
 }
 

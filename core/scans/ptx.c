@@ -190,6 +190,6 @@ conic_status conic_ptx_read(conic_input *input, const conic_read_options *option
   if (status == CONIC_OK)
     status = read_ptx_scans(&reader);
   if (status == CONIC_OK && !delivery)
-    status = conic_raw_colors_decode(input->context, model, 0);
+    status = conic_raw_colors_decode(input->context, &model->points, 0, &model->colors_are);
   return status == CONIC_OK ? conic_builder_deliver(&reader.builder, 1) : status;
 }

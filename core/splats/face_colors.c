@@ -11,19 +11,17 @@ enum { TABLE_BITS = 17, TABLE_SIZE = 1 << TABLE_BITS, MOST_COLORS = TABLE_SIZE /
 conic_status conic_face_colors_take(conic_context *context, conic_face_colors *colors, const conic_model *model,
                                     size_t first, const double raw[3]) {
   conic_splats *to = &colors->raw;
-  if (to->count == 0)
-    colors->first = first;
-  const size_t count = model->n_triangles - colors->first;
+  size_t room = colors->room;
   for (int channel = 0; channel < 3; channel++) {
-    size_t room = colors->room;
-    if (conic_memory_reserve(context, &to->color[channel], to->count, count, &room, sizeof(float)) != CONIC_OK)
+    room = colors->room;
+    if (conic_memory_reserve(context, &to->color[channel], to->count, model->n_triangles, &room, sizeof(float)) !=
+        CONIC_OK)
       return CONIC_ERROR_MEMORY;
-    if (channel == 2)
-      colors->room = room;
-    for (size_t i = first - colors->first; i < count; i++)
-      to->color[channel][i] = (float)raw[channel];
+    for (size_t i = to->count; i < model->n_triangles; i++)
+      to->color[channel][i] = i < first ? NAN : (float)raw[channel];
   }
-  to->count = count;
+  colors->room = room;
+  to->count = model->n_triangles;
   return CONIC_OK;
 }
 
@@ -53,44 +51,44 @@ static conic_status find_material(conic_context *context, uint32_t *table, conic
   return CONIC_OK;
 }
 
-/* The colour of triangle i behind the first. Where all numbers were 0 there is no array: that is black by any scale. */
+/* The colour of triangle i. Where all numbers were 0 there is no array: that is black by any scale. */
 static void color_at(const conic_face_colors *colors, size_t i, float linear[3]) {
-  int is_finite = 1;
-  for (int channel = 0; channel < 3; channel++) {
+  int is_there = i < colors->raw.count;
+  for (int channel = 0; channel < 3 && is_there; channel++) {
     linear[channel] = colors->raw.color[channel] ? colors->raw.color[channel][i] : 0.0f;
-    is_finite &= linear[channel] - linear[channel] == 0.0f;
+    is_there = linear[channel] - linear[channel] == 0.0f;
   }
-  for (int channel = 0; channel < 3 && !is_finite; channel++)
+  for (int channel = 0; channel < 3 && !is_there; channel++)
     linear[channel] = 1.0f;
 }
 
-static conic_status give_to_faces(conic_context *context, const conic_face_colors *colors, conic_faces *faces) {
+static conic_status give_to_faces(conic_context *context, const conic_face_colors *colors, const conic_model *model) {
+  conic_faces *faces = model->faces;
   uint32_t *table = conic_memory_allocate_zeroed(context, (size_t)2 * TABLE_SIZE, sizeof *table);
   conic_status status = table ? CONIC_OK : CONIC_ERROR_MEMORY;
-  for (size_t i = 0; i < colors->raw.count && colors->first + i < faces->count && status == CONIC_OK; i++) {
+  while (status == CONIC_OK && faces->count < model->n_triangles)
+    status = conic_faces_add(context, faces, NULL, NULL);
+  for (size_t i = 0; i < faces->count && status == CONIC_OK; i++) {
     float linear[3];
     color_at(colors, i, linear);
-    status = find_material(context, table, faces, linear, &faces->material[colors->first + i]);
+    status = find_material(context, table, faces, linear, &faces->material[i]);
   }
-  for (size_t i = 0; i < colors->first && i < faces->count; i++)
-    faces->material[i] = (uint32_t)faces->n_made; /* white */
+  faces->current_material = (uint32_t)faces->n_made; /* further ones are white */
   conic_memory_release(context, table);
   return status;
 }
 
 static conic_status give_to_vertices(conic_builder *builder, const conic_face_colors *colors) {
-  conic_splats *points = &builder->model->points;
+  const conic_model *model = builder->model;
+  const conic_splats *points = &model->points;
   float(*sums)[4] = conic_memory_allocate_zeroed(builder->context, points->count, sizeof *sums);
   conic_status status = sums ? conic_builder_add_field(builder, CONIC_SPLATS_COLORS) : CONIC_ERROR_MEMORY;
-  for (size_t i = 0; i < colors->raw.count && colors->first + i < builder->model->n_triangles && sums; i++) {
-    float linear[3];
-    color_at(colors, i, linear);
-    for (int k = 0; k < 3; k++) {
-      float *sum = sums[builder->model->triangles[colors->first + i][k]];
-      for (int channel = 0; channel < 3; channel++)
-        sum[channel] += linear[channel];
-      sum[3] += 1.0f;
-    }
+  for (size_t i = 0; i < 3 * model->n_triangles && sums; i++) {
+    float linear[3], *sum = sums[model->triangles[i / 3][i % 3]];
+    color_at(colors, i / 3, linear);
+    for (int channel = 0; channel < 3; channel++)
+      sum[channel] += linear[channel];
+    sum[3] += 1.0f;
   }
   for (size_t i = 0; status == CONIC_OK && i < points->count; i++)
     for (int channel = 0; channel < 3; channel++)
@@ -99,18 +97,20 @@ static conic_status give_to_vertices(conic_builder *builder, const conic_face_co
   return status;
 }
 
-conic_status conic_face_colors_finish(conic_builder *builder, conic_face_colors *colors, unsigned kind,
+conic_status conic_face_colors_finish(conic_builder *builder, conic_face_colors *colors, unsigned kind, int keeps_faces,
                                       conic_status status) {
   conic_context *context = builder->context;
-  conic_color_meaning meaning;
+  conic_model *model = builder->model;
   if (status == CONIC_OK && colors->raw.count > 0) {
-    status = conic_raw_colors_decode_set(context, &colors->raw, kind, &meaning);
-    builder->model->colors_are = meaning;
+    status = conic_raw_colors_decode(context, &colors->raw, kind, &model->colors_are);
+    if (status == CONIC_OK && keeps_faces && !model->faces)
+      status = conic_faces_create(context, &model->faces);
     if (status == CONIC_OK)
-      status = builder->model->faces ? give_to_faces(context, colors, builder->model->faces)
-                                     : give_to_vertices(builder, colors);
+      status = model->faces ? give_to_faces(context, colors, model) : give_to_vertices(builder, colors);
   }
   conic_memory_release_these(context, colors->raw.color[0], colors->raw.color[1], colors->raw.color[2]);
-  *colors = (conic_face_colors){.first = 0};
+  while (status == CONIC_OK && model->faces && model->faces->n_made && model->faces->count < model->n_triangles)
+    status = conic_faces_add(context, model->faces, NULL, NULL);
+  *colors = (conic_face_colors){.room = 0};
   return status;
 }

@@ -73,11 +73,11 @@ void conic_raw_colors_apply(const conic_raw_scale *scale, float *values, size_t 
   }
 }
 
-conic_status conic_raw_colors_decode_set(conic_context *context, conic_splats *points, unsigned kind,
-                                         conic_color_meaning *meaning) {
+conic_status conic_raw_colors_decode(conic_context *context, conic_splats *points, unsigned kind,
+                                     uint32_t *colors_are) {
   conic_raw_scale scale;
   conic_raw_range range = {0.0f, 0, 0};
-  *meaning = CONIC_COLORS_NONE;
+  *colors_are = CONIC_COLORS_NONE;
   if (!points->color[0])
     return CONIC_OK;
   conic_raw_colors_see(points, &range);
@@ -87,16 +87,9 @@ conic_status conic_raw_colors_decode_set(conic_context *context, conic_splats *p
   if (!scale.table)
     drop_colors(context, points);
   else
-    *meaning = scale.whole > 1 ? CONIC_COLORS_CODES : scale.is_linear ? CONIC_COLORS_LINEAR : CONIC_COLORS_DISPLAY;
+    *colors_are = scale.whole > 1 ? CONIC_COLORS_CODES : scale.is_linear ? CONIC_COLORS_LINEAR : CONIC_COLORS_DISPLAY;
   for (int channel = 0; channel < 3 && scale.table; channel++)
     conic_raw_colors_apply(&scale, points->color[channel], points->count);
   conic_memory_release(context, scale.table);
   return CONIC_OK;
-}
-
-conic_status conic_raw_colors_decode(conic_context *context, conic_model *model, unsigned kind) {
-  conic_color_meaning meaning;
-  conic_status status = conic_raw_colors_decode_set(context, &model->points, kind, &meaning);
-  model->colors_are = meaning;
-  return status;
 }

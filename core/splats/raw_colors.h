@@ -21,9 +21,11 @@ typedef enum conic_raw_kind {
   CONIC_RAW_LINEAR = 2     /* fractions are linear */
 } conic_raw_kind;
 
-/* Of numbers that may be anything. */
-static inline unsigned conic_raw_kind_of(const conic_read_options *options) {
-  return CONIC_RAW_FRACTIONS | (options->colors_are == CONIC_COLORS_LINEAR ? (unsigned)CONIC_RAW_LINEAR : 0u);
+/* Of numbers with that conic_color_meaning, or of those that may be anything. */
+static inline unsigned conic_raw_kind_of(int meaning) {
+  return meaning == CONIC_COLORS_CODES    ? 0u
+         : meaning == CONIC_COLORS_LINEAR ? (unsigned)CONIC_RAW_FRACTIONS | (unsigned)CONIC_RAW_LINEAR
+                                          : (unsigned)CONIC_RAW_FRACTIONS;
 }
 
 /* How to decode values of that range: what they are fractions of, and the linear value of every whole one up to it,
@@ -39,11 +41,9 @@ conic_status conic_raw_colors_scale(conic_context *context, const conic_raw_rang
 /* Decodes n values in place. */
 void conic_raw_colors_apply(const conic_raw_scale *scale, float *values, size_t n);
 
-/* Decodes sRGB values in place, and says in the model what they are. The largest of them tells: below 2 fractions, up
- * to 255 codes of 8 bits, up to 4095 codes of 12, beyond that codes of 16. Codes of 8 bits that stand in both bytes
- * count as 16. Where all are multiples of 256, they are codes of 8 bits in the upper half, and 255 × 256 is white.
- * Where the largest is 0, nobody has filled them in: they are dropped, and the points are white. Errors: MEMORY. */
-conic_status conic_raw_colors_decode(conic_context *context, conic_model *model, unsigned kind);
-/* The same of colours beside those of the model's points. */
-conic_status conic_raw_colors_decode_set(conic_context *context, conic_splats *points, unsigned kind,
-                                         conic_color_meaning *meaning);
+/* Decodes sRGB values in place, and says what they are (conic_color_meaning). The largest of them tells: below 2
+ * fractions, up to 255 codes of 8 bits, up to 4095 codes of 12, beyond that codes of 16. Codes of 8 bits that stand in
+ * both bytes count as 16. Where all are multiples of 256, they are codes of 8 bits in the upper half, and 255 × 256 is
+ * white. Where the largest is 0, nobody has filled them in: they are dropped, and the points are white. Errors: MEMORY.
+ */
+conic_status conic_raw_colors_decode(conic_context *context, conic_splats *points, unsigned kind, uint32_t *colors_are);
