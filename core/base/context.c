@@ -76,7 +76,15 @@ int conic_context_threads(const conic_context *context) {
 /* Each block is preceded by the pointer that the allocator gave, so that any allocator serves aligned blocks. */
 static const size_t alignment_bytes = 64;
 
-void *conic_memory_allocate(conic_context *context, size_t count, size_t size) {
+/* Large blocks of zeros come from the system as such: whoever writes to them first touches them, on its thread. */
+static void *take_zeros(const conic_context *context, size_t bytes) {
+  if (context->options.allocate == default_allocate)
+    return calloc(1, bytes);
+  void *raw = context->options.allocate(context->options.allocator_cookie, bytes);
+  return raw ? memset(raw, 0, bytes) : NULL;
+}
+
+static void *take_block(conic_context *context, size_t count, size_t size, int is_zeroed) {
   size_t limit = context->options.max_allocation_bytes ? context->options.max_allocation_bytes : SIZE_MAX;
   if (limit > SIZE_MAX - 2 * alignment_bytes)
     limit = SIZE_MAX - 2 * alignment_bytes;
@@ -84,7 +92,9 @@ void *conic_memory_allocate(conic_context *context, size_t count, size_t size) {
     conic_fail(context, CONIC_ERROR_MEMORY, "%zu × %zu bytes of memory are over the limit", count, size);
     return NULL;
   }
-  char *raw = context->options.allocate(context->options.allocator_cookie, count * size + 2 * alignment_bytes);
+  size_t bytes = count * size + 2 * alignment_bytes;
+  char *raw =
+      is_zeroed ? take_zeros(context, bytes) : context->options.allocate(context->options.allocator_cookie, bytes);
   if (!raw) {
     conic_fail(context, CONIC_ERROR_MEMORY, "out of memory: %zu bytes asked for", count * size);
     return NULL;
@@ -95,11 +105,12 @@ void *conic_memory_allocate(conic_context *context, size_t count, size_t size) {
   return aligned;
 }
 
+void *conic_memory_allocate(conic_context *context, size_t count, size_t size) {
+  return take_block(context, count, size, 0);
+}
+
 void *conic_memory_allocate_zeroed(conic_context *context, size_t count, size_t size) {
-  void *pointer = conic_memory_allocate(context, count, size);
-  if (pointer)
-    memset(pointer, 0, count * size);
-  return pointer;
+  return take_block(context, count, size, 1);
 }
 
 conic_status conic_memory_grow(conic_context *context, void *array, size_t used, size_t count, size_t size) {

@@ -207,7 +207,8 @@ static void hand_over_dots(conic_estimate *estimate, conic_model *model) {
 /* Gives the model its axes. Cannot fail: a set with axes gets the new ones among its own, a set without takes the
  * arrays. */
 static void hand_over_axes(conic_estimate *estimate, conic_model *model) {
-  for (int axis = 0; axis < 3; axis++)
+  int keeps_all = model->points.tangent_u[0] && count_states(estimate, CONIC_POINT_KEPT) == model->points.count;
+  for (int axis = 0; axis < 3 && !keeps_all; axis++)
     for (int i_tangent = 0; i_tangent < 2; i_tangent++) {
       float **own = i_tangent ? &model->points.tangent_v[axis] : &model->points.tangent_u[axis];
       float **made = i_tangent ? &estimate->tangent_v[axis] : &estimate->tangent_u[axis];

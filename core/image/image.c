@@ -80,13 +80,12 @@ conic_status conic_image_allocate(conic_context *context, int width, int height,
     if (!(planes >> i & 1))
       continue;
     size_t pixel_bytes = (size_t)descriptions[i].n_channels * 4;
-    image->planes[i] = conic_memory_allocate(context, conic_image_pixels(image), pixel_bytes);
+    image->planes[i] = conic_memory_allocate_zeroed(context, conic_image_pixels(image), pixel_bytes);
     if (!image->planes[i]) {
       conic_image_release(context, image);
       return CONIC_ERROR_MEMORY;
     }
     conic_memory_prefer_large_pages(context, image->planes[i], conic_image_pixels(image) * pixel_bytes);
-    memset(image->planes[i], 0, conic_image_pixels(image) * pixel_bytes);
   }
   return CONIC_OK;
 }
