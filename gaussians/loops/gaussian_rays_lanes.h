@@ -141,9 +141,10 @@ static void mend_equals(meetings *m, size_t n) {
 }
 
 /* Puts in order what lies side by side and has keys that cannot tell; returns whether anything did not. Tells where
- * depths are equal, too. */
+ * equal depths are not in the list's order, too. */
 CONIC_INLINE int swap_neighbours(meetings *m, size_t n, int *has_equals) {
   int has_swapped = 0;
+  *has_equals = 0;
   lanes second = lanes_load(m->keys[0]);
   for (size_t i = 1; i < n; i++) {
     lanes first = second;
@@ -157,7 +158,8 @@ CONIC_INLINE int swap_neighbours(meetings *m, size_t n, int *has_equals) {
     lanes z_second = lanes_gather(
         m->z[0], at_pixels(lanes_select_indices(is_unclear, lanes_to_bits(second) & m->by.numbers, (index_lanes){0})));
     lanes_mask is_wrong = is_unclear & lanes_less(z_second, z_first);
-    *has_equals |= lanes_any(is_unclear & lanes_not(is_wrong) & lanes_not(lanes_less(z_first, z_second)));
+    lanes_mask is_equal = is_unclear & lanes_not(is_wrong) & lanes_not(lanes_less(z_first, z_second));
+    *has_equals |= lanes_any(is_equal & lanes_less(second, first)); /* keys without depths that differ: places */
     lanes_store(m->keys[i - 1], lanes_select(is_wrong, second, first));
     second = lanes_select(is_wrong, first, second);
     lanes_store(m->keys[i], second);
