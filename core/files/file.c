@@ -154,6 +154,7 @@ static conic_status open_kept(conic_output *output) {
 static conic_status open_temporary(conic_output *output) {
   if (output->is_kept)
     return open_kept(output);
+  conic_output_sweep(output->context, output->target);
   for (int attempt = 0; attempt < 100; attempt++) {
     conic_memory_release(output->context, output->temporary_path);
     output->temporary_path = temporary_name(output->context, output->target, attempt);

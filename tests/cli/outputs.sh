@@ -21,6 +21,15 @@ ln s.ply twin.ply
 mkdir folder
 ln -s ../s.ply folder/far.ply
 
+# What killed commands have left is removed by the next that writes the file, unless somebody may still write it
+touch -d '5 minutes ago' .a.999999999-0.pfm .a.$$-0.pfm .b.999999999-0.pfm
+touch .a.999999998-0.pfm
+"$conic" render s.ply -o a.pfm --size 8x8
+[[ ! -e .a.999999999-0.pfm ]] || fail "what a killed command left is still there"
+for name in .a.$$-0.pfm .a.999999998-0.pfm .b.999999999-0.pfm; do
+  [[ -e $name ]] || fail "$name is gone"
+done
+
 # Positional inputs
 for name in s.ply ./s.ply link.ply twin.ply folder/far.ply; do
   kept s.ply prepare s.ply -o $name
