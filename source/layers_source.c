@@ -115,7 +115,8 @@ static conic_status draw_layers(conic_source *source, conic_renderer *renderer, 
                                 conic_render_statistics *statistics) {
   layers_source *l = (layers_source *)source;
   conic_render_statistics own;
-  const conic_layers_draw_options options = wish_of(view);
+  conic_layers_draw_options options = wish_of(view);
+  options.only_samples = source->only_samples;
   statistics = statistics ? statistics : &own;
   conic_status status = conic_layers_draw(l->layers, renderer, camera, render, &options, image, statistics, &l->drawn);
   return status == CONIC_OK ? finish_picture(l, statistics) : status;

@@ -98,6 +98,7 @@ struct conic_source {
   unsigned traits, no_traits;   /* bits of conic_source_trait: those that it has, and those that it surely lacks */
   conic_splats outline;         /* from conic_source_take_samples, if it was called */
   double samples_until;         /* by the clock: after this nothing is read for the outline; 0: no limit */
+  int only_samples;             /* of layered clouds, in the next picture: coarse places show some of their samples */
   double tolerance;             /* how far splats made of meshes are off these; 0: there are none */
   conic_splats_shares shares;   /* the team that shares the splats; the choice then holds this process's part for
                                    functions that look at all */

@@ -68,6 +68,7 @@ static conic_status draw_around(conic_source *source, conic_renderer *renderer, 
   render.cull_back = 1; /* so that normals are the surface's own, and open surfaces are seen to be open */
   render.shading = CONIC_SHADE_NONE;
   view.error_px = sample_error_px;
+  source->only_samples = 1;
   view.may_be_coarser = source->samples_until > 0.0;
   for (int i = begin; i < end && status == CONIC_OK; i++) {
     conic_camera camera;
@@ -81,6 +82,7 @@ static conic_status draw_around(conic_source *source, conic_renderer *renderer, 
     if (status == CONIC_OK)
       add_picture(samples, &camera, image);
   }
+  source->only_samples = 0;
   return status;
 }
 

@@ -91,6 +91,8 @@ typedef struct conic_layers_draw_options {
   conic_transparency transparency; /* as in conic_render_transparent, where the samples keep their opacities. Hidden
                                       clouds are then read, too, and everything has to fit into memory at once */
   double chance;                   /* as in conic_render_transparent */
+  int only_samples;                /* coarse places are drawn as some of their samples, not as stand-ins */
+  int reserved_int;
 } conic_layers_draw_options;
 
 /* Full resolution, one sample, automatic occlusion. */

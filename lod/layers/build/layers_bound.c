@@ -407,5 +407,10 @@ void conic_layers_describe_node(const conic_layers_plan *plan, const conic_layer
     entry->axis[axis] = (float)node->axis[axis];
   }
   entry->sphere = rounded_up((double)entry->sphere + slack);
+  if (node->n_stand_ins > 0) {
+    entry->stand_in_error = rounded_up((node->stand_in_error + 3.0 * rounding) * q);
+    entry->stand_in_radius = rounded_up(node->stand_in_radius * q);
+    entry->stand_in_cone = plan->is_unoriented ? 0 : (uint16_t)larger(0.0, (node->stand_in_cone + 1.0) * 32767.0 - 1.0);
+  }
   entry->cone = plan->is_unoriented ? -1.0f : (float)larger(-1.0, node->cone - 4e-6);
 }

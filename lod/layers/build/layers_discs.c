@@ -32,10 +32,11 @@ static float error_from_one(const disc_search *p, uint32_t i_chosen, int is_turn
 }
 
 /* How far a place is from the discs beside; or no more than `enough`. */
-static float error_from_nearest(const disc_search *p, const float at[3], float enough) {
+static float error_from_nearest(const conic_layers_disc *from, const uint32_t *list, size_t n, const float at[3],
+                                float enough) {
   float nearest2 = HUGE_VALF, enough2 = enough > 0.0f ? enough * enough : 0.0f;
-  for (size_t i = 0; i < p->n_beside && !(nearest2 <= enough2); i++) {
-    const conic_layers_disc *s = &p->chosen->discs[p->beside[i]];
+  for (size_t i = 0; i < n && !(nearest2 <= enough2); i++) {
+    const conic_layers_disc *s = &from[list ? list[i] : i];
     float height = 0.0f, way2 = 0.0f;
     for (int axis = 0; axis < 3; axis++) {
       float way = at[axis] - s->center[axis];
@@ -50,23 +51,29 @@ static float error_from_nearest(const disc_search *p, const float at[3], float e
 }
 
 /* The farthest of the disc's middle and the corners of a polygon around it. The polygon is turned by an angle. */
-static float error_of_places(const disc_search *p, const float turn[2], float enough) {
+static float error_of_places(const conic_layers_disc *disc, const conic_layers_disc *from, const uint32_t *list,
+                             size_t n_from, const float turn[2], float enough) {
   static const float corners[4][2] = {
       {1.0f, 0.19891237f}, {0.84775907f, 0.56645450f}, {0.56645450f, 0.84775907f}, {0.19891237f, 1.0f}};
-  const float *n = p->disc->normal, radius = p->disc->radius;
+  const float *n = disc->normal, radius = disc->radius;
   float sign = n[2] >= 0.0f ? 1.0f : -1.0f, a = -1.0f / (sign + n[2]), b = n[0] * n[1] * a;
   const float u[3] = {1.0f + sign * (n[0] * n[0]) * a, sign * b, -sign * n[0]};
   const float v[3] = {b, sign + n[1] * n[1] * a, -n[1]};
-  float farthest = error_from_nearest(p, p->disc->center, enough);
+  float farthest = error_from_nearest(from, list, n_from, disc->center, enough);
   for (int i = 0; i < N_CORNERS; i++) {
     float x = corners[i % 4][0] * (i & 4 ? -radius : radius), y = corners[i % 4][1] * (i & 8 ? -radius : radius), at[3];
     float along_u = x * turn[0] - y * turn[1], along_v = x * turn[1] + y * turn[0];
     for (int axis = 0; axis < 3; axis++)
-      at[axis] = p->disc->center[axis] + along_u * u[axis] + along_v * v[axis];
-    float error = error_from_nearest(p, at, enough);
+      at[axis] = disc->center[axis] + along_u * u[axis] + along_v * v[axis];
+    float error = error_from_nearest(from, list, n_from, at, enough);
     farthest = error > farthest ? error : farthest;
   }
   return farthest;
+}
+
+float conic_layers_disc_off(const conic_layers_disc *disc, const conic_layers_disc *from, size_t n, float enough) {
+  const float turn[2] = {1.0f, 0.0f};
+  return error_of_places(disc, from, NULL, n, turn, enough);
 }
 
 /* Looks also at corners of the same polygon turned, where places between the corners could come to more than enough.
@@ -74,9 +81,10 @@ static float error_of_places(const disc_search *p, const float turn[2], float en
 static float error_of_more_places(const disc_search *p, float enough) {
   static const float turns[4][2] = {
       {1.0f, 0.0f}, {0.99518473f, 0.09801714f}, {0.98078528f, 0.19509032f}, {0.95694034f, 0.29028468f}};
-  float nearly = enough - 0.2f * p->disc->radius, farthest = error_of_places(p, turns[0], nearly);
+  float nearly = enough - 0.2f * p->disc->radius,
+        farthest = error_of_places(p->disc, p->chosen->discs, p->beside, p->n_beside, turns[0], nearly);
   for (int i = 1; i < 4 && farthest > nearly; i++) {
-    float error = error_of_places(p, turns[i], enough);
+    float error = error_of_places(p->disc, p->chosen->discs, p->beside, p->n_beside, turns[i], enough);
     farthest = error > farthest ? error : farthest;
   }
   return farthest;

@@ -318,6 +318,8 @@ typedef struct writing {
   conic_layers_entry *entries; /* some at a time */
   unsigned char *bytes;        /* of as many entries, or of a cloud */
   uint64_t offset;             /* where the next cloud's bytes will be */
+  uint64_t stand_in_bytes;     /* of all */
+  int is_of_stand_ins;         /* these are written, which come before all clouds */
   conic_checksumming sum;
   FILE *stream;
   cloud_moving *moving; /* likewise */
@@ -328,6 +330,7 @@ typedef conic_status take_entries(writing *w, size_t n);
 static conic_status for_entries(writing *w, take_entries *take) {
   conic_status status = CONIC_OK;
   w->offset = CONIC_LAYERS_HEADER_BYTES + conic_layers_index_bytes(w->header);
+  w->offset += w->is_of_stand_ins ? 0 : w->stand_in_bytes;
   for (uint64_t first = 0; first < w->order.n && status == CONIC_OK; first += SOME_ENTRIES) {
     size_t n;
     status = read_in_order(&w->order, first, w->entries, &n);
@@ -346,13 +349,21 @@ static void make_entries(writing *w, size_t n) {
   conic_layers_write_entries(w->entries, n, w->bytes);
 }
 
+static conic_status measure_stand_ins(writing *w, size_t n) {
+  for (size_t i = 0; i < n; i++)
+    w->stand_in_bytes += w->entries[i].stand_in_bytes;
+  return CONIC_OK;
+}
+
 static conic_status measure_clouds(writing *w, size_t n) {
   conic_layers_header *header = w->header;
   for (size_t i = 0; i < n; i++) {
     const conic_layers_entry *entry = &w->entries[i];
     header->n_samples += entry->n_samples;
-    header->most_samples = entry->n_samples > header->most_samples ? entry->n_samples : header->most_samples;
-    header->most_bytes = entry->n_bytes > header->most_bytes ? entry->n_bytes : header->most_bytes;
+    uint32_t n_most = entry->n_samples > entry->n_stand_ins ? entry->n_samples : entry->n_stand_ins;
+    uint32_t n_bytes = entry->n_bytes > entry->stand_in_bytes ? entry->n_bytes : entry->stand_in_bytes;
+    header->most_samples = n_most > header->most_samples ? n_most : header->most_samples;
+    header->most_bytes = n_bytes > header->most_bytes ? n_bytes : header->most_bytes;
   }
   make_entries(w, n);
   conic_checksum_add(&w->sum, w->bytes, n * CONIC_LAYERS_ENTRY_BYTES);
@@ -380,12 +391,31 @@ static conic_status measure_file(writing *w) {
   conic_layers_write_table(header, w->bytes);
   conic_checksum_begin(&w->sum);
   conic_checksum_add(&w->sum, w->bytes, conic_layers_table_bytes(header));
-  conic_status status = for_entries(w, measure_clouds);
+  conic_status status = for_entries(w, measure_stand_ins);
+  if (status == CONIC_OK)
+    status = for_entries(w, measure_clouds);
   if (status != CONIC_OK)
     return status;
   header->file_bytes = w->offset;
   header->index_sum = conic_checksum_end(&w->sum);
   return status;
+}
+
+/* The next of the stand-ins' bytes, which lie behind their cloud's until then, or of the clouds'. */
+static cloud_move move_of_entry(writing *w, const conic_layers_entry *entry) {
+  cloud_move move = {entry->offset, w->offset, entry->n_bytes};
+  if (w->is_of_stand_ins)
+    move = (cloud_move){entry->offset + entry->n_bytes, w->offset, entry->stand_in_bytes};
+  w->offset += move.n_bytes;
+  return move;
+}
+
+/* Does so with all stand-ins, and then with all clouds. */
+static conic_status for_all_bytes(writing *w, take_entries *take) {
+  w->is_of_stand_ins = 1;
+  conic_status status = for_entries(w, take);
+  w->is_of_stand_ins = 0;
+  return status == CONIC_OK ? for_entries(w, take) : status;
 }
 
 /* A failed write is seen when the file is committed. */
@@ -398,11 +428,10 @@ static conic_status write_entries(writing *w, size_t n) {
 static conic_status write_clouds(writing *w, size_t n) {
   conic_status status = CONIC_OK;
   for (size_t i = 0; i < n && status == CONIC_OK; i++) {
-    const conic_layers_entry *entry = &w->entries[i];
-    status = conic_pile_read(&w->tree->clouds, entry->offset, w->bytes, entry->n_bytes);
+    const cloud_move move = move_of_entry(w, &w->entries[i]);
+    status = conic_pile_read(&w->tree->clouds, move.from, w->bytes, (size_t)move.n_bytes);
     if (status == CONIC_OK)
-      fwrite(w->bytes, 1, entry->n_bytes, w->stream);
-    w->offset += entry->n_bytes;
+      fwrite(w->bytes, 1, (size_t)move.n_bytes, w->stream);
   }
   if (status == CONIC_OK && ferror(w->stream)) /* soon, where the disk is full */
     status = CONIC_ERROR_IO;
@@ -413,17 +442,15 @@ static conic_status write_clouds(writing *w, size_t n) {
 /* Tells every process where its clouds go. */
 static conic_status move_clouds(writing *w, size_t n) {
   cloud_move moves[SOME_ENTRIES];
-  for (size_t i = 0; i < n; i++) {
-    moves[i] = (cloud_move){w->entries[i].offset, w->offset, w->entries[i].n_bytes};
-    w->offset += w->entries[i].n_bytes;
-  }
+  for (size_t i = 0; i < n; i++)
+    moves[i] = move_of_entry(w, &w->entries[i]);
   conic_status status = conic_progress(w->context, "write", (double)w->offset / (double)w->header->file_bytes);
   return tell_moves(w->moving, status, moves, n);
 }
 
 static conic_status write_clouds_together(writing *w) {
   conic_moment start = conic_moment_now();
-  conic_status status = fflush(w->stream) == 0 ? for_entries(w, move_clouds) : CONIC_ERROR_IO;
+  conic_status status = fflush(w->stream) == 0 ? for_all_bytes(w, move_clouds) : CONIC_ERROR_IO;
   status = tell_moves(w->moving, status, NULL, 0);
   conic_team_note(w->team, "write", start, w->header->file_bytes);
   return status;
@@ -440,7 +467,7 @@ static conic_status write_file(writing *w) {
     return status == CONIC_OK ? write_clouds_together(w) : status;
   if (status == CONIC_OK)
     status = conic_memory_grow(w->context, &w->bytes, 0, w->header->most_bytes, 1);
-  return status == CONIC_OK ? for_entries(w, write_clouds) : status;
+  return status == CONIC_OK ? for_all_bytes(w, write_clouds) : status;
 }
 
 static conic_status write_measured(writing *w, const char *path) {

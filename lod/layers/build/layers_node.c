@@ -1,4 +1,4 @@
-#include "lod/layers/build/layers_node.h"
+#include "lod/layers/build/layers_stand_ins.h"
 
 /* Clouds are written so many bytes at a time. */
 enum { PACKED_BYTES = 1 << 17 };
@@ -22,6 +22,8 @@ conic_status conic_layers_worker_create(const conic_layers_plan *plan, conic_lay
       conic_layers_coder_create(context, conic_layers_most_in_leaf(plan), plan->schema, NULL, &made->coder);
   if (status == CONIC_OK)
     status = conic_thinner_create(context, n, &made->thinner);
+  if (status == CONIC_OK)
+    status = conic_layers_standing_create(plan, &made->standing);
   if (status == CONIC_OK) {
     made->candidates = conic_memory_allocate(context, n, plan->sample_bytes);
     made->is_chosen = conic_memory_allocate(context, n, 1);
@@ -41,6 +43,7 @@ void conic_layers_worker_destroy(conic_layers_worker *worker) {
   conic_context *context = worker->plan.context;
   conic_layers_coder_destroy(worker->coder);
   conic_thinner_destroy(context, worker->thinner);
+  conic_layers_standing_destroy(context, worker->standing);
   conic_memory_release_these(context, worker->candidates, worker->is_chosen, worker->outlines, worker);
 }
 
@@ -53,7 +56,8 @@ size_t conic_layers_worker_bytes(const conic_layers_plan *plan) {
   size_t zstd_bytes = 1 << 20,
          cloud_bytes = 2 * (size_t)(plan->schema->n_streams + 8) * conic_layers_most_in_leaf(plan);
   return zstd_bytes + cloud_bytes + CONIC_LAYERS_OUTLINES * sizeof(uint64_t) + PACKED_BYTES +
-         conic_thinner_bytes(most_candidates(plan)) + most_candidates(plan) * plan->sample_bytes;
+         conic_thinner_bytes(most_candidates(plan)) + conic_layers_standing_bytes(plan) +
+         most_candidates(plan) * plan->sample_bytes;
 }
 
 conic_status conic_layers_packed_flush(conic_layers_packed *packed) {
@@ -157,10 +161,20 @@ conic_status conic_layers_grow(conic_layers_worker *worker, unsigned char *sampl
   return grow(worker, samples, n, worker->plan.has_bare, packed, node);
 }
 
-/* Packs samples as the node's cloud and puts its entry on the packed. */
-static conic_status pack_cloud(conic_layers_worker *worker, const conic_layers_node *node, const unsigned char *samples,
-                               size_t n, conic_layers_packed *packed) {
-  conic_context *context = worker->plan.context;
+/* Puts bytes behind those that are to be put away. */
+static conic_status append_bytes(const unsigned char *bytes, size_t n_bytes, conic_layers_packed *packed) {
+  conic_status status = conic_memory_reserve(packed->context, &packed->bytes, packed->n_bytes,
+                                             packed->n_bytes + n_bytes, &packed->byte_room, 1);
+  if (status != CONIC_OK)
+    return status;
+  memcpy(packed->bytes + packed->n_bytes, bytes, n_bytes);
+  packed->n_bytes += n_bytes;
+  return CONIC_OK;
+}
+
+/* Packs samples as the node's cloud, and its stand-ins behind it, and puts its entry on the packed. */
+static conic_status pack_cloud(conic_layers_worker *worker, const conic_layers_node *node, int which,
+                               const unsigned char *samples, size_t n, conic_layers_packed *packed) {
   const unsigned char *bytes;
   conic_layers_entry entry;
   conic_layers_describe_node(&worker->plan, node, &entry);
@@ -172,27 +186,24 @@ static conic_status pack_cloud(conic_layers_worker *worker, const conic_layers_n
   conic_status status = packed->n_bytes + n_bytes > PACKED_BYTES ? conic_layers_packed_flush(packed) : CONIC_OK;
   entry.offset = packed->n_bytes;
   if (status == CONIC_OK)
-    status = conic_memory_reserve(context, &packed->entries, packed->n_entries, packed->n_entries + 1,
-                                  &packed->entry_room, sizeof entry);
-  if (status == CONIC_OK)
-    status = conic_memory_reserve(context, &packed->bytes, packed->n_bytes, packed->n_bytes + n_bytes,
-                                  &packed->byte_room, 1);
-  if (status != CONIC_OK)
-    return status;
-  memcpy(packed->bytes + packed->n_bytes, bytes, n_bytes);
-  packed->n_bytes += n_bytes;
-  packed->entries[packed->n_entries++] = entry;
-  return CONIC_OK;
+    status = append_bytes(bytes, n_bytes, packed);
+  if (status == CONIC_OK && node->n_stand_ins > 0) {
+    conic_layers_stand_ins_encode(worker->standing, which, node, &entry, &bytes);
+    status = append_bytes(bytes, entry.stand_in_bytes, packed);
+  }
+  return status == CONIC_OK ? conic_memory_append(packed->context, &packed->entries, &packed->n_entries,
+                                                  &packed->entry_room, &entry, sizeof entry)
+                            : status;
 }
 
 /* Packs what the parent has not taken of a child's samples, which are among the candidates, as the child's cloud. */
-static conic_status pack_rest(conic_layers_worker *worker, const conic_layers_node *child, unsigned char *samples,
-                              const uint8_t *is_taken, conic_layers_packed *packed) {
+static conic_status pack_rest(conic_layers_worker *worker, const conic_layers_node *child, int which,
+                              unsigned char *samples, const uint8_t *is_taken, conic_layers_packed *packed) {
   size_t n = 0, stride = child->stride;
   for (size_t i = 0; i < child->n_drawn; i++)
     if (!is_taken[i])
       memmove(samples + n++ * stride, samples + i * stride, stride);
-  return pack_cloud(worker, child, samples, n, packed);
+  return pack_cloud(worker, child, which, samples, n, packed);
 }
 
 /* Drops what no entry of so large a place, nor a larger one, looks at any more. */
@@ -261,6 +272,8 @@ conic_status conic_layers_merge(conic_layers_worker *worker, conic_layers_node *
   const uint8_t *is_chosen = worker->is_chosen;
   *parent = NULL;
   conic_status status = gather_candidates(worker, children);
+  for (int i = 0; i < 2 && status == CONIC_OK && worker->standing; i++)
+    conic_layers_stand_in(worker->standing, &worker->plan, i, i ? second : worker->candidates, children[i]);
   if (status == CONIC_OK)
     status = choose_samples(worker, children, parent);
   if (status != CONIC_OK) {
@@ -272,9 +285,9 @@ conic_status conic_layers_merge(conic_layers_worker *worker, conic_layers_node *
   (*parent)->children[1] = children[1];
   status = conic_layers_bound_node(&worker->plan, worker->thinner, is_alone, *parent);
   if (status == CONIC_OK)
-    status = pack_rest(worker, children[0], worker->candidates, is_chosen, packed);
+    status = pack_rest(worker, children[0], 0, worker->candidates, is_chosen, packed);
   if (status == CONIC_OK)
-    status = pack_rest(worker, children[1], second, is_chosen + children[0]->n_drawn, packed);
+    status = pack_rest(worker, children[1], 1, second, is_chosen + children[0]->n_drawn, packed);
   forget(*parent, (*parent)->n_place);
   if (status == CONIC_OK)
     return CONIC_OK;
@@ -283,10 +296,12 @@ conic_status conic_layers_merge(conic_layers_worker *worker, conic_layers_node *
   return status;
 }
 
-conic_status conic_layers_finish_root(conic_layers_worker *worker, const conic_layers_node *node,
+conic_status conic_layers_finish_root(conic_layers_worker *worker, conic_layers_node *node,
                                       conic_layers_packed *packed) {
   conic_status status = conic_layers_fetch_samples(node, worker->candidates);
-  return status == CONIC_OK ? pack_cloud(worker, node, worker->candidates, node->n_drawn, packed) : status;
+  if (status == CONIC_OK && worker->standing)
+    conic_layers_stand_in(worker->standing, &worker->plan, 0, worker->candidates, node);
+  return status == CONIC_OK ? pack_cloud(worker, node, 0, worker->candidates, node->n_drawn, packed) : status;
 }
 
 conic_status conic_layers_pool_begin(const conic_layers_plan *plan, const char *path, size_t memory_bytes,

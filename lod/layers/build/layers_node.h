@@ -112,6 +112,9 @@ struct conic_layers_node {
   double low[3], high[3];   /* box of its place's samples, in steps */
   double center[3], sphere; /* of these, in steps */
   double axis[3], cone;
+  /* Its stand-ins, from when it is packed on; their errors and radii are in steps, too. */
+  double stand_in_error, stand_in_radius, stand_in_cone;
+  size_t n_stand_ins;
 };
 
 static inline const conic_layers_sample *conic_layers_drawn_at(const conic_layers_node *node, size_t i) {
@@ -181,7 +184,8 @@ typedef struct conic_layers_worker {
   conic_layers_pool *pool;
   conic_thinner *thinner;
   conic_layers_coder *coder;
-  unsigned char *candidates; /* of the two children, then what is left of one */
+  struct conic_layers_standing *standing; /* null: no stand-ins are made */
+  unsigned char *candidates;              /* of the two children, then what is left of one */
   uint8_t *is_chosen;
   uint64_t *outlines; /* how many samples have which at full resolution: CONIC_LAYERS_OUTLINES counts */
 } conic_layers_worker;
@@ -208,7 +212,7 @@ conic_status conic_layers_merge(conic_layers_worker *worker, conic_layers_node *
                                 conic_layers_packed *packed, conic_layers_node **parent);
 
 /* Packs what the root still has, as its cloud. Errors: MEMORY, IO. */
-conic_status conic_layers_finish_root(conic_layers_worker *worker, const conic_layers_node *node,
+conic_status conic_layers_finish_root(conic_layers_worker *worker, conic_layers_node *node,
                                       conic_layers_packed *packed);
 
 /* Where places have no more than this many leaves' samples, the largest of them have their normals found one by one. */

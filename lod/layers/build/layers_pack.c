@@ -172,7 +172,7 @@ static branch_head describe_branch(const conic_layers_grown *grown, size_t node_
   for (size_t i = 0; i < CONIC_LAYERS_OUTLINES; i++)
     head.n_counts += grown->outlines[i] > 0;
   for (size_t i = 0; i < grown->n_entries; i++)
-    head.cloud_bytes += grown->entries[i].n_bytes;
+    head.cloud_bytes += conic_layers_bytes_together(&grown->entries[i]);
   return head;
 }
 
@@ -190,7 +190,7 @@ static conic_status fill_branch(const conic_layers_grown *grown, const conic_pil
   for (size_t i = 0; i < grown->n_entries; i++, at += sizeof *grown->entries) {
     conic_layers_entry entry = grown->entries[i];
     entry.offset = offset;
-    offset += entry.n_bytes;
+    offset += conic_layers_bytes_together(&entry);
     memcpy(at, &entry, sizeof entry);
   }
   for (size_t i = 0; i < CONIC_LAYERS_OUTLINES; i++)
@@ -202,8 +202,9 @@ static conic_status fill_branch(const conic_layers_grown *grown, const conic_pil
   memcpy(at, packed_node, (size_t)head->node_bytes);
   at += head->node_bytes;
   for (size_t i = 0; i < grown->n_entries && status == CONIC_OK; i++) {
-    status = conic_pile_read(clouds, grown->entries[i].offset, at, grown->entries[i].n_bytes);
-    at += grown->entries[i].n_bytes;
+    size_t n_bytes = (size_t)conic_layers_bytes_together(&grown->entries[i]);
+    status = conic_pile_read(clouds, grown->entries[i].offset, at, n_bytes);
+    at += n_bytes;
   }
   return status;
 }
@@ -240,7 +241,7 @@ static int are_entries_sound(const branch_head *head, const unsigned char *entri
     memcpy(&entry, entries + i * sizeof entry, sizeof entry);
     if (entry.offset != offset || entry.child > 1 || entry.child > n_open)
       return 0;
-    offset += entry.n_bytes;
+    offset += conic_layers_bytes_together(&entry);
     n_open -= entry.child;
     n_open += i % 2;
   }

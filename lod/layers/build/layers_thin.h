@@ -47,6 +47,10 @@ typedef struct conic_layers_chosen {
   const conic_layers_disc *discs;
 } conic_layers_chosen;
 
+/* The farthest that a disc, at its middle and at 16 places around it, is from the nearest of n discs; where it is no
+ * more than `enough`, any number that is not. */
+float conic_layers_disc_off(const conic_layers_disc *disc, const conic_layers_disc *from, size_t n, float enough);
+
 /* The greatest distance of the n discs from the chosen ones, plus `beyond`, by which they are off already; or `error`
  * where that is more. It is a bound where one disc holds all of another; else it is measured at the middle and at 16
  * places around it. The greatest of several sets is the same in whichever order they come. */

@@ -365,7 +365,7 @@ static int fits(bands *b) {
   const conic_layers_gathering gathering = begin_gathering_part(b);
   int height = b->part.y_end - b->part.y_begin, rows = b->band_rows < height ? b->band_rows : height;
   for (size_t i = 0; i < d->n_chosen; i++) {
-    double weight = conic_layers_place_weight(d->layers, &d->cut->places[d->chosen[i]]);
+    double weight = conic_layers_place_weight(&d->cut->places[d->chosen[i]]);
     b->n_expected += weight;
     b->n_here += weight * conic_layers_share_of_place(&gathering, d->chosen[i]);
   }

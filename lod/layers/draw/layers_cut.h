@@ -19,10 +19,18 @@ typedef enum conic_place_state {
 
 typedef struct conic_layers_place {
   uint32_t node;
+  uint32_t stand_ins; /* the cloud that is drawn in place of its samples; 0: none */
+  uint32_t n_splats;  /* that are drawn */
   conic_place_state state;
   double offset;
   conic_layers_sight sight;
 } conic_layers_place;
+
+/* The bounds of what is drawn of a place. */
+static inline const conic_layers_entry *conic_layers_place_entry(const conic_layers *layers,
+                                                                 const conic_layers_place *place) {
+  return &layers->entries[place->stand_ins ? place->stand_ins : place->node];
+}
 
 /* The pixels that a place may cover in a picture of n × as many, a side. */
 static inline conic_window conic_layers_fine_pixels(const conic_layers_place *place, int n) {
@@ -46,6 +54,8 @@ typedef struct conic_layers_wish {
   int most_levels;            /* 0: all */
   const unsigned char *is_in; /* a cloud: whether it can be used; null: all can */
   uint64_t n_root;            /* as in a cut */
+  int may_stand_in;           /* coarse places are drawn as their stand-ins, */
+  int prefers_stand_ins;      /* wherever samples would be no finer than the leaves' stand-ins */
 } conic_layers_wish;
 
 /* Finds the cut. On the way down from the root it takes, of what is in sight, the first node whose error is at most the
@@ -53,15 +63,17 @@ typedef struct conic_layers_wish {
 conic_status conic_layers_find_cut(const conic_layers *layers, const conic_layers_view *view,
                                    const conic_layers_wish *wish, conic_layers_cut *cut);
 
-/* Finds the least error for which the cut has no more than `budget` splats. Where the root alone has more, the error is
- * infinite, and *n_root how many of its samples are to be drawn then; else that is 0, for all of the cut's. Errors:
- * MEMORY. */
-conic_status conic_layers_fit_budget(const conic_layers *layers, const conic_layers_view *view, int most_levels,
-                                     uint64_t budget, double *error_px, uint64_t *n_root);
+/* Finds the least error for which a cut like this has no more than `budget` splats. Where the root alone has more, the
+ * error is infinite, and *n_root how many of its samples are to be drawn then; else that is 0, for all of the cut's.
+ * Errors: MEMORY. */
+conic_status conic_layers_fit_budget(const conic_layers *layers, const conic_layers_view *view,
+                                     const conic_layers_wish *wish, uint64_t budget, double *error_px,
+                                     uint64_t *n_root);
 
 void conic_layers_cut_release(conic_context *context, conic_layers_cut *cut);
 
-/* Marks the clouds that a place needs: its own and all above it. Returns how many were not marked before. */
+/* Marks the clouds that a place needs: its own and all above it, or its stand-ins. Returns how many were not marked
+ * before. */
 size_t conic_layers_mark_needed(const conic_layers *layers, const conic_layers_place *place, unsigned char *needed);
 
 /* Finds the clouds that are needed for the cut's places in the states up to `last`: needed[c] becomes 1 for them, and 0

@@ -44,9 +44,20 @@ static const char *what_of_draw_is_wrong(const conic_camera *camera, const conic
   return NULL;
 }
 
+/* What is late is drawn as what is above it, whose clouds are there in any case; stand-ins would have to be read. */
+static conic_layers_wish wish_of(const conic_layers_picture *d) {
+  const conic_layers_draw_options *o = &d->options;
+  int is_coarse = (o->budget || o->error_px > 0.0) && !o->may_be_coarser && !o->only_samples;
+  return (conic_layers_wish){.error_px = d->drawn.error_px,
+                             .most_levels = o->most_levels,
+                             .n_root = d->n_root,
+                             .may_stand_in = is_coarse && conic_layers_has_stand_ins(d->layers),
+                             .prefers_stand_ins = o->budget > 0};
+}
+
 static conic_status choose_clouds(conic_layers_picture *d, const unsigned char *is_in) {
-  conic_layers_wish wish = {
-      .error_px = d->drawn.error_px, .most_levels = d->options.most_levels, .is_in = is_in, .n_root = d->n_root};
+  conic_layers_wish wish = wish_of(d);
+  wish.is_in = is_in;
   return conic_layers_find_cut(d->layers, &d->view, &wish, &d->cut);
 }
 
@@ -54,9 +65,9 @@ static conic_status choose_first(conic_layers_picture *d) {
   const conic_layers_draw_options *options = &d->options;
   conic_status status = CONIC_OK;
   d->drawn.error_px = options->error_px;
+  const conic_layers_wish wish = wish_of(d);
   if (options->budget)
-    status = conic_layers_fit_budget(d->layers, &d->view, options->most_levels, options->budget, &d->drawn.error_px,
-                                     &d->n_root);
+    status = conic_layers_fit_budget(d->layers, &d->view, &wish, options->budget, &d->drawn.error_px, &d->n_root);
   return status == CONIC_OK ? choose_clouds(d, NULL) : status;
 }
 
@@ -140,14 +151,14 @@ static void count_up(conic_layers_picture *d, const conic_render_statistics *sta
     const conic_layers_place *place = &d->cut.places[i];
     drawn->n_places_hidden += place->state == CONIC_PLACE_HIDDEN;
     drawn->n_places_grazing += place->state == CONIC_PLACE_GRAZING;
-    n_splats += d->layers->entries[place->node].n_drawn;
+    n_splats += place->n_splats;
   }
   drawn->n_clouds_grazing = conic_layers_needed(d->layers, &d->cut, CONIC_PLACE_SHOWN, d->needed);
   drawn->n_clouds = conic_layers_needed(d->layers, &d->cut, CONIC_PLACE_GRAZING, d->needed);
   drawn->n_clouds_grazing = drawn->n_clouds - drawn->n_clouds_grazing;
   n_splats -= drawn->n_splats_turned;
   drawn->n_splats_left = n_splats > statistics->splats_in ? n_splats - statistics->splats_in : 0;
-  for (uint32_t i = 0; i < d->layers->header.n_clouds; i++)
+  for (uint32_t i = 0; i < conic_layers_all(d->layers); i++)
     if (d->needed[i] && d->layers->entries[i].n_samples > 0 && d->layers->entries[i].level >= drawn->n_levels)
       drawn->n_levels = d->layers->entries[i].level + 1;
 }
@@ -178,7 +189,7 @@ static void move_camera_on(const conic_camera *before, const conic_camera *now, 
 static int guess_next(const conic_layers_picture *d, conic_layers_view *view, conic_layers_wish *wish) {
   const conic_layers *layers = d->layers;
   conic_camera camera;
-  *wish = (conic_layers_wish){.error_px = d->drawn.error_px, .most_levels = d->options.most_levels};
+  *wish = wish_of(d);
   *view = d->view;
   if (d->options.may_be_coarser)
     return wish->most_levels++ > 0 && conic_seconds_now() < d->until_s;
@@ -199,10 +210,10 @@ static void look_ahead(void *data) {
   size_t n = 0;
   if (!layers->is_remote || !guess_next(d, &view, &wish))
     return;
-  uint32_t *clouds = conic_memory_allocate(layers->context, layers->header.n_clouds, sizeof *clouds);
+  uint32_t *clouds = conic_memory_allocate(layers->context, conic_layers_all(layers), sizeof *clouds);
   if (clouds && conic_layers_find_cut(layers, &view, &wish, &cut) == CONIC_OK) {
     conic_layers_needed(layers, &cut, CONIC_PLACE_SHOWN, d->needed);
-    for (uint32_t i = 0; i < layers->header.n_clouds; i++)
+    for (uint32_t i = 0; i < conic_layers_all(layers); i++)
       if (d->needed[i] && layers->entries[i].n_samples > 0)
         clouds[n++] = i;
     if (n > 0)
@@ -295,8 +306,8 @@ static conic_status begin_choosing(conic_layers_picture *d) {
     status = expand_layers(d);
   if (status != CONIC_OK)
     return status;
-  d->needed = conic_memory_allocate(layers->context, layers->header.n_clouds, sizeof *d->needed);
-  d->held = conic_memory_allocate(layers->context, layers->header.n_clouds, sizeof *d->held);
+  d->needed = conic_memory_allocate(layers->context, conic_layers_all(layers), sizeof *d->needed);
+  d->held = conic_memory_allocate(layers->context, conic_layers_all(layers), sizeof *d->held);
   status = d->needed && d->held ? choose_for_picture(d) : CONIC_ERROR_MEMORY;
   if (status != CONIC_OK)
     return status;
@@ -378,7 +389,7 @@ conic_status conic_layers_picture_draw(conic_layers_picture *d, const conic_wind
   int n_bands, is_whole = image->width == d->camera.width && image->height == d->camera.height;
   size_t n_chosen = choose_places(d, window);
   layers->picture_bytes = bytes_of_picture(image) + other_bytes;
-  memset(d->needed, 0, layers->header.n_clouds);
+  memset(d->needed, 0, conic_layers_all(layers));
   for (size_t k = 0; k < n_chosen; k++)
     conic_layers_mark_needed(layers, &d->cut.places[d->chosen[k]], d->needed);
   conic_status status = measure_needed(d);
@@ -429,7 +440,7 @@ void conic_layers_picture_weigh(const conic_layers_picture *d, const conic_windo
   for (size_t i = 0; i < d->cut.n; i++) {
     const conic_window *pixels = &d->cut.places[i].sight.pixels;
     double area = (double)(pixels->x_end - pixels->x_begin) * (double)(pixels->y_end - pixels->y_begin);
-    double weight = conic_layers_place_weight(d->layers, &d->cut.places[i]) / area;
+    double weight = conic_layers_place_weight(&d->cut.places[i]) / area;
     for (size_t k = find_window_at(list, n, pixels->y_begin); k < n && list[k].y_begin < pixels->y_end; k++) {
       conic_window in = conic_window_meet(pixels, &list[k]);
       if (in.x_begin < in.x_end && in.y_begin < in.y_end)

@@ -23,19 +23,25 @@ struct gather {
   piece_function *function;
 };
 
-/* Walks from every chosen place up to the root. */
+/* Walks from every chosen place up to the root, but where it has stand-ins. */
 static void find_places_below(gather *g) {
   const conic_layers_entry *entries = g->layers->entries;
   for (size_t k = 0; k < g->asked->n_chosen; k++) {
     const conic_layers_place *place = &g->asked->cut->places[g->asked->chosen[k]];
-    for (uint32_t node = place->node; place->state != CONIC_PLACE_HIDDEN; node = entries[node].parent) {
+    uint32_t first = place->stand_ins ? place->stand_ins : place->node;
+    for (uint32_t node = first; place->state != CONIC_PLACE_HIDDEN; node = entries[node].parent) {
       place_range *below = &g->below[node];
       below->first = below->end ? below->first : (uint32_t)k;
       below->end = (uint32_t)k + 1;
-      if (node == 0)
+      if (node == 0 || place->stand_ins)
         break;
     }
   }
+}
+
+/* Whether something of the cloud is drawn of a place below it. */
+static int is_drawn_from(const conic_layers_place *place, uint32_t cloud) {
+  return place->state != CONIC_PLACE_HIDDEN && (!place->stand_ins || place->stand_ins == cloud);
 }
 
 /* Lists the pieces of some clouds by cloud, each cloud's in the order of its keys. */
@@ -53,7 +59,7 @@ static conic_status list_pieces(gather *g, const uint32_t *clouds, size_t n_clou
   }
   for (size_t i = 0; i < n_clouds; i++)
     for (uint32_t k = g->below[clouds[i]].first; k < g->below[clouds[i]].end; k++)
-      if (g->asked->cut->places[g->asked->chosen[k]].state != CONIC_PLACE_HIDDEN)
+      if (is_drawn_from(&g->asked->cut->places[g->asked->chosen[k]], clouds[i]))
         set->pieces[set->n_pieces++] = (conic_layers_piece){.cloud = clouds[i], .i_place = g->asked->chosen[k]};
   return CONIC_OK;
 }
@@ -93,14 +99,15 @@ static sieve begin_sieve(const gather *g, const conic_layers_piece *piece, const
   const conic_layers_place *place = &g->asked->cut->places[piece->i_place];
   const conic_layers_gathering *part = conic_layers_share_of_place(g->asked, piece->i_place) < 1.0 ? g->asked : NULL;
   const conic_layers_turned *turned = g->asked->cut->turned ? &g->asked->cut->turned[piece->i_place] : NULL;
-  return (sieve){.cloud = cloud,
-                 .place = place,
-                 .view = g->asked->view,
-                 .part = part,
-                 .reach_px =
-                     part ? conic_layers_reach(part->part_view, &g->layers->entries[place->node], &place->sight) : 0.0,
-                 .n_of = g->asked->cut->n_root < cloud->count ? g->asked->cut->n_root : 0,
-                 .turned = turned && turned->is_any && cloud->facing ? turned : NULL};
+  return (sieve){
+      .cloud = cloud,
+      .place = place,
+      .view = g->asked->view,
+      .part = part,
+      .reach_px =
+          part ? conic_layers_reach(part->part_view, conic_layers_place_entry(g->layers, place), &place->sight) : 0.0,
+      .n_of = g->asked->cut->n_root < cloud->count ? g->asked->cut->n_root : 0,
+      .turned = turned && turned->is_any && cloud->facing ? turned : NULL};
 }
 
 static inline int is_dot(const conic_layers_cloud *cloud, size_t i) {
@@ -139,7 +146,7 @@ static void count_piece(const gather *g, conic_layers_piece *piece) {
   const conic_layers_place *place = &g->asked->cut->places[piece->i_place];
   const conic_layers_cloud *cloud = cloud_of(layers, piece);
   size_t first = 0, end = cloud->count;
-  if (piece->cloud != place->node)
+  if (piece->cloud != place->node && !place->stand_ins)
     conic_layers_range(&layers->header, cloud, &layers->entries[place->node], &first, &end);
   piece->first = (uint32_t)first;
   piece->end = (uint32_t)end;
@@ -184,16 +191,17 @@ static float growth_of(const gather *g, const conic_layers_cloud *cloud) {
 static splat_copying begin_copy(const gather *g, const conic_layers_piece *piece) {
   const conic_splats *to = &g->set->splats;
   const conic_layers_cloud *cloud = cloud_of(g->layers, piece);
-  uint32_t node = g->asked->cut->places[piece->i_place].node;
+  const conic_layers_place *place = &g->asked->cut->places[piece->i_place];
+  uint32_t node = place->node;
   size_t from = piece->first, at = piece->at;
   int is_from_above = g->layers->octree && piece->cloud != node;
   splat_copying c = {.cloud = cloud,
-                     .entry = &g->layers->entries[node],
+                     .entry = conic_layers_place_entry(g->layers, place),
                      .cutoff = g->asked->cutoff,
                      .outline = cloud->outline ? cloud->outline + from : NULL,
                      .to_opacity = to->opacity ? to->opacity + at : NULL,
                      .to_dot = to->dot ? to->dot + at : NULL,
-                     .to_lines = cloud->lines ? g->set->lines + at : NULL,
+                     .to_lines = g->set->lines ? g->set->lines + at : NULL,
                      .to_id = g->set->ids + at,
                      .most = is_from_above ? conic_layers_octree_outline(g->layers, node) : INFINITY,
                      .growth = growth_of(g, cloud),
@@ -252,8 +260,8 @@ static void copy_values(const gather *g, const conic_layers_cloud *cloud, size_t
     g->set->named->value[v][k] = cloud->values[v * cloud->count + i_cloud];
 }
 
-static int has_payload(const conic_layers_cloud *cloud) {
-  return cloud->axis[0] || cloud->dot;
+static int has_payload(const splat_copying *c) {
+  return c->cloud->axis[0] || c->cloud->dot || c->to_lines;
 }
 
 /* What else a splat has. At full resolution it is drawn as it came, in coarser places as a circle without lines. */
@@ -269,8 +277,9 @@ static void copy_payload(const splat_copying *c, size_t i_cloud, size_t k) {
   if (c->to_dot)
     c->to_dot[k] = cloud->dot[i_cloud];
   if (c->to_lines) {
-    c->to_lines[k] = cloud->lines[i_cloud];
-    c->to_lines[k].kind = is_full ? c->to_lines[k].kind : 0;
+    c->to_lines[k].kind = 0;
+    if (is_full)
+      c->to_lines[k] = cloud->lines[i_cloud];
   }
 }
 
@@ -307,7 +316,7 @@ static void fill_piece(const gather *g, conic_layers_piece *piece) {
   splat_copying c = begin_copy(g, piece);
   if (piece->n_chosen == n) {
     copy_all(&c, n, first_id);
-    for (size_t i = 0; i < n && has_payload(cloud); i++)
+    for (size_t i = 0; i < n && has_payload(&c); i++)
       copy_payload(&c, piece->first + i, i);
     for (size_t i = 0; i < n && g->set->named; i++)
       copy_values(g, cloud, piece->first + i, piece->at + i);
@@ -317,7 +326,7 @@ static void fill_piece(const gather *g, conic_layers_piece *piece) {
   for (size_t i = 0; i < n && k < piece->n_chosen; i++)
     if (!is_turned(&s, piece->first + i) && is_chosen(&s, piece->first + i) && !is_elsewhere(&s, piece->first + i)) {
       copy_one(&c, i, k, first_id + (uint32_t)i);
-      if (has_payload(cloud))
+      if (has_payload(&c))
         copy_payload(&c, piece->first + i, k);
       copy_values(g, cloud, piece->first + i, piece->at + k);
       k++;
@@ -431,8 +440,7 @@ static size_t expect(const gather *g) {
   size_t n = 0;
   for (size_t k = 0; k < g->asked->n_chosen && !g->asked->receive; k++) {
     const conic_layers_place *place = &g->asked->cut->places[g->asked->chosen[k]];
-    size_t n_drawn = g->layers->entries[place->node].n_drawn;
-    n_drawn = (size_t)((double)n_drawn * conic_layers_share_of_place(g->asked, g->asked->chosen[k]));
+    size_t n_drawn = (size_t)((double)place->n_splats * conic_layers_share_of_place(g->asked, g->asked->chosen[k]));
     n += place->state == CONIC_PLACE_SHOWN ? n_drawn : place->state == CONIC_PLACE_GRAZING ? n_drawn / 16 : 0;
   }
   return n < g->asked->most || !g->asked->most ? n + 1 : g->asked->most + 1;
@@ -441,11 +449,11 @@ static size_t expect(const gather *g) {
 /* The clouds that have something below which a chosen place lies. */
 static conic_status gather_clouds(gather *g) {
   conic_layers *layers = g->layers;
-  uint32_t *clouds = conic_memory_allocate(layers->context, layers->header.n_clouds, sizeof *clouds);
+  uint32_t *clouds = conic_memory_allocate(layers->context, conic_layers_all(layers), sizeof *clouds);
   if (!clouds)
     return CONIC_ERROR_MEMORY;
   size_t n = 0;
-  for (uint32_t i = 0; i < layers->header.n_clouds; i++)
+  for (uint32_t i = 0; i < conic_layers_all(layers); i++)
     if (g->below[i].end && layers->entries[i].n_samples > 0)
       clouds[n++] = i;
   conic_status status = take_clouds(g, clouds, n);
@@ -460,7 +468,7 @@ conic_status conic_layers_gather(conic_layers *layers, const conic_layers_gather
     status = conic_layers_set_reserve(layers, set, 0, expect(&g));
   if (status != CONIC_OK)
     return status;
-  g.below = conic_memory_allocate_zeroed(layers->context, layers->header.n_clouds, sizeof *g.below);
+  g.below = conic_memory_allocate_zeroed(layers->context, conic_layers_all(layers), sizeof *g.below);
   if (!g.below)
     return CONIC_ERROR_MEMORY;
   find_places_below(&g);

@@ -31,7 +31,7 @@ double conic_layers_depth_complexity(const conic_layers *layers, const conic_lay
   double spacing = layers->header.spacing, cell_px = (double)view->width * (double)view->height / sizeof is_met;
   for (size_t i = 0; i < cut->n; i++) {
     const conic_layers_sight *sight = &cut->places[i].sight;
-    const conic_layers_entry *entry = &layers->entries[cut->places[i].node];
+    const conic_layers_entry *entry = conic_layers_place_entry(layers, &cut->places[i]);
     double distance = sight->distance + (double)entry->sphere, scale = view->greatest_focal / distance;
     if (!(distance > 0.0))
       continue;
@@ -47,7 +47,7 @@ double conic_layers_depth_complexity(const conic_layers *layers, const conic_lay
 
 /* What is seen of a place behind what was drawn so far. */
 static void judge_place(const hiding *h, conic_layers_place *place) {
-  const conic_layers_entry *entry = &h->layers->entries[place->node];
+  const conic_layers_entry *entry = conic_layers_place_entry(h->layers, place);
   const conic_layers_sight *s = &place->sight;
   double hides = (double)conic_horizon_least(&h->horizon, &s->pixels);
   double offset = conic_layers_hidden_offset(h->view, entry, s, hides);
@@ -96,7 +96,7 @@ static conic_status draw_chosen(hiding *h, size_t n_chosen) {
 
 static uint64_t splats_of(const hiding *h, size_t i) {
   const conic_layers_place *place = &h->cut->places[h->by_depth[i]];
-  return place->state == CONIC_PLACE_SHOWN ? h->layers->entries[place->node].n_drawn : 0;
+  return place->state == CONIC_PLACE_SHOWN ? place->n_splats : 0;
 }
 
 /* Looks at the places from `begin` on again. Returns how many splats of them are shown. */

@@ -136,7 +136,7 @@ static conic_status find_pages(conic_layers *layers, const conic_layers_view *vi
   conic_layers_wish wish = {.error_px = e->error_px, .most_levels = e->most_levels};
   conic_status status = CONIC_OK;
   if (e->budget)
-    status = conic_layers_fit_budget(layers, view, e->most_levels, e->budget, &wish.error_px, &wish.n_root);
+    status = conic_layers_fit_budget(layers, view, &wish, e->budget, &wish.error_px, &wish.n_root);
   return status == CONIC_OK ? conic_layers_find_cut(layers, view, &wish, cut) : status;
 }
 

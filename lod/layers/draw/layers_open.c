@@ -103,12 +103,17 @@ static void drop_start(conic_layers *layers, layers_start *start) {
 
 static conic_status take_index(conic_layers *layers, const unsigned char *bytes) {
   conic_layers_header *header = &layers->header;
-  if (conic_memory_allocate_these(layers->context, CONIC_ROOM(layers->entries, header->n_clouds),
-                                  CONIC_ROOM(layers->first_sample, header->n_clouds)) != CONIC_OK)
+  size_t n_all = conic_layers_all_entries(header);
+  if (conic_memory_allocate_these(layers->context, CONIC_ROOM(layers->entries, n_all),
+                                  CONIC_ROOM(layers->first_sample, n_all)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   conic_status status = conic_layers_read_index(layers->context, layers->name, header, bytes, layers->entries);
   uint64_t first = 0;
-  for (uint32_t i = 0; status == CONIC_OK && i < header->n_clouds; i++) {
+  layers->stand_ins = *header;
+  if (status == CONIC_OK && header->version >= 3 &&
+      conic_layers_stand_in_schema(&header->schema, header->quantum, &layers->stand_ins.schema))
+    layers->n_all = (uint32_t)n_all;
+  for (uint32_t i = 0; status == CONIC_OK && i < conic_layers_all(layers); i++) {
     layers->first_sample[i] = first;
     first += layers->entries[i].n_samples;
   }

@@ -10,8 +10,8 @@ typedef struct window_plan {
   double *sums; /* of the cells above and to the left of a corner: how many splats are there */
 } window_plan;
 
-double conic_layers_place_weight(const conic_layers *layers, const conic_layers_place *place) {
-  double n = (double)layers->entries[place->node].n_drawn;
+double conic_layers_place_weight(const conic_layers_place *place) {
+  double n = (double)place->n_splats;
   return place->state == CONIC_PLACE_SHOWN ? n : place->state == CONIC_PLACE_GRAZING ? n / 16.0 + 1.0 : 0.0;
 }
 
@@ -53,7 +53,7 @@ static double *corner_of(const window_plan *p, int column, int row) {
 static void spread_place(const window_plan *p, const conic_layers_place *place) {
   const conic_layers_windows *w = p->w;
   conic_window pixels = conic_layers_fine_pixels(place, p->asked->samples), in = conic_window_meet(&w->part, &pixels);
-  double weight = conic_layers_place_weight(p->asked->layers, place);
+  double weight = conic_layers_place_weight(place);
   if (in.x_begin >= in.x_end || in.y_begin >= in.y_end || weight == 0.0)
     return;
   int last_row = conic_layers_cell_row(w, in.y_end - 1), last_column = conic_layers_cell_column(w, in.x_end - 1);

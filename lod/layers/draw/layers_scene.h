@@ -15,8 +15,11 @@ struct conic_layers {
   struct conic_layers_octree *octree; /* null: a .lpc */
   uint64_t n_told;                    /* bytes received that a picture's statistics have told of */
   conic_layers_header header;
-  conic_layers_entry *entries;
-  uint64_t *first_sample; /* number of each cloud's first, in the order of the file */
+  conic_layers_header stand_ins; /* the header, as stand-ins are decoded */
+  uint32_t n_all;                /* clouds, and, where there are stand-ins, as many more: those of cloud i are number
+                                    n_clouds + i; 0: there are none */
+  conic_layers_entry *entries;   /* of all */
+  uint64_t *first_sample;        /* number of each cloud's first, in the order of the file */
   conic_layers_choice choice;
   conic_layers_store store;
   uint64_t picture_bytes;               /* what the image that is being drawn takes */
@@ -38,6 +41,21 @@ static inline uint32_t conic_layers_children(const conic_layers *layers) {
   return layers->octree ? 8 : 2;
 }
 
+/* Clouds and stand-ins together. */
+static inline uint32_t conic_layers_all(const conic_layers *layers) {
+  return layers->n_all ? layers->n_all : layers->header.n_clouds;
+}
+
+static inline int conic_layers_is_stand_in(const conic_layers *layers, uint32_t cloud) {
+  return layers->n_all && cloud >= layers->header.n_clouds;
+}
+
+/* Whether coarse places are drawn as their stand-ins, which have no values of their own. */
+static inline int conic_layers_has_stand_ins(const conic_layers *layers) {
+  const conic_layers_choice *choice = &layers->choice;
+  return layers->n_all && !choice->filter && choice->colored_by < 0 && !choice->n_kept;
+}
+
 /* Whether a cloud is in memory, or empty. */
 static inline int conic_layers_has_cloud(const conic_layers *layers, uint32_t cloud) {
   return layers->store.slots[cloud].cloud || layers->entries[cloud].n_samples == 0;
@@ -50,7 +68,7 @@ static inline uint64_t conic_layers_free_bytes(const conic_layers *layers) {
   const uint64_t own_bytes = (UINT64_C(14) << 20) + ((uint64_t)conic_context_threads(layers->context) << 21);
   const uint64_t all = layers->access.memory_bytes;
   uint64_t cloud_bytes = sizeof(conic_layers_entry) + sizeof(conic_layers_slot) + 96; /* with its place and pieces */
-  uint64_t taken = own_bytes + layers->header.n_clouds * cloud_bytes + layers->picture_bytes;
+  uint64_t taken = own_bytes + conic_layers_all(layers) * cloud_bytes + layers->picture_bytes;
   return all > taken + all / 8 ? all - taken : all / 8;
 }
 

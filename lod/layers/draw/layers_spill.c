@@ -85,7 +85,7 @@ static void find_boxes(void *data, size_t i_piece) {
   const conic_layers_piece *piece = &spill->set->pieces[i_piece];
   const conic_layers_place *place = &spill->cut->places[piece->i_place];
   const conic_splats *splats = &spill->set->splats;
-  double radius = (double)spill->layers->entries[place->node].radius;
+  double radius = (double)conic_layers_place_entry(spill->layers, place)->radius;
   for (size_t i = piece->at; i < piece->at + piece->n_chosen; i++) {
     const float position[3] = {splats->position[0][i], splats->position[1][i], splats->position[2][i]};
     conic_window pixels = conic_layers_fine_pixels(place, spill->samples);

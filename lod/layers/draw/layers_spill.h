@@ -35,7 +35,7 @@ conic_status conic_layers_windows_plan(const conic_layers_parting *parting, coni
 void conic_layers_windows_release(conic_context *context, conic_layers_windows *windows);
 
 /* About how many splats a place gives; a grazing one gives few. */
-double conic_layers_place_weight(const conic_layers *layers, const conic_layers_place *place);
+double conic_layers_place_weight(const conic_layers_place *place);
 
 /* The row of cells that has the part's row of pixels. */
 static inline int conic_layers_cell_row(const conic_layers_windows *w, int y) {

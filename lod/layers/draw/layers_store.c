@@ -26,33 +26,45 @@ conic_status conic_layers_store_open(conic_layers *layers) {
   conic_context *context = layers->context;
   size_t n_threads = (size_t)conic_context_threads(context);
   store->newest = store->oldest = CONIC_NO_CLOUD;
-  store->slots = conic_memory_allocate_zeroed(context, layers->header.n_clouds, sizeof *store->slots);
+  store->slots = conic_memory_allocate_zeroed(context, conic_layers_all(layers), sizeof *store->slots);
   if (layers->octree)
     return store->slots ? CONIC_OK : CONIC_ERROR_MEMORY;
-  store->decoders = conic_memory_allocate_zeroed(context, n_threads, sizeof(void *));
+  store->decoders = conic_memory_allocate_zeroed(context, 2 * n_threads, sizeof(void *));
   if (!store->slots || !store->decoders)
     return CONIC_ERROR_MEMORY;
   conic_status status = CONIC_OK;
   for (size_t i = 0; i < n_threads && status == CONIC_OK; i++)
     status = conic_layers_decoder_create(context, &layers->header, &layers->choice, &store->decoders[i]);
+  for (size_t i = 0; i < n_threads && status == CONIC_OK && layers->n_all; i++)
+    status = conic_layers_decoder_create(context, &layers->stand_ins, NULL, &store->decoders[n_threads + i]);
   return status;
 }
 
 void conic_layers_store_close(conic_layers *layers) {
   conic_layers_store *store = &layers->store;
   conic_context *context = layers->context;
-  for (uint32_t i = 0; store->slots && i < layers->header.n_clouds; i++)
+  for (uint32_t i = 0; store->slots && i < conic_layers_all(layers); i++)
     conic_memory_release(context, store->slots[i].cloud);
-  for (int i = 0; store->decoders && i < conic_context_threads(context); i++)
+  for (int i = 0; store->decoders && i < 2 * conic_context_threads(context); i++)
     conic_layers_decoder_destroy(store->decoders[i]);
   conic_memory_release(context, store->slots);
   conic_memory_release(context, store->decoders);
   memset(store, 0, sizeof *store);
 }
 
+static const conic_layers_header *header_of(const conic_layers *layers, uint32_t cloud) {
+  return conic_layers_is_stand_in(layers, cloud) ? &layers->stand_ins : &layers->header;
+}
+
+/* What is made of values: stand-ins have none. */
+static const conic_layers_choice *choice_of(const conic_layers *layers, uint32_t cloud) {
+  return conic_layers_is_stand_in(layers, cloud) ? NULL : &layers->choice;
+}
+
 /* There are few sizes, so that what one cloud leaves another can take. */
 static size_t bytes_of(const conic_layers *layers, uint32_t cloud) {
-  size_t n_bytes = HEAD_BYTES + conic_layers_cloud_bytes(&layers->header, &layers->entries[cloud], &layers->choice);
+  size_t n_bytes = HEAD_BYTES + conic_layers_cloud_bytes(header_of(layers, cloud), &layers->entries[cloud],
+                                                         choice_of(layers, cloud));
   return (n_bytes + (BLOCK_STEP - 1)) / BLOCK_STEP * BLOCK_STEP;
 }
 
@@ -120,9 +132,12 @@ static void decode_task(void *data, size_t i_item, int i_thread) {
   if (one->cloud && a->layers->octree)
     one->wrong =
         conic_layers_octree_decode(a->layers, one->answer.id, one->answer.bytes, one->answer.n_bytes, one->cloud);
-  else if (one->cloud)
+  else if (one->cloud) {
+    if (conic_layers_is_stand_in(a->layers, one->answer.id))
+      i_thread += conic_context_threads(a->layers->context);
     one->wrong = conic_layers_decode(a->layers->store.decoders[i_thread], &a->layers->entries[one->answer.id],
                                      one->answer.bytes, one->cloud);
+  }
 }
 
 static conic_status keep_cloud(conic_layers *layers, arrival *one) {
@@ -186,8 +201,8 @@ conic_status conic_layers_store_allocate(const conic_layers *layers, uint32_t cl
   *made = conic_memory_allocate(layers->context, bytes_of(layers, cloud), 1);
   if (!*made)
     return CONIC_ERROR_MEMORY;
-  conic_layers_cloud_place(&layers->header, &layers->entries[cloud], &layers->choice, (char *)*made + HEAD_BYTES,
-                           *made);
+  conic_layers_cloud_place(header_of(layers, cloud), &layers->entries[cloud], choice_of(layers, cloud),
+                           (char *)*made + HEAD_BYTES, *made);
   return CONIC_OK;
 }
 
@@ -270,7 +285,7 @@ static conic_status take_all(conic_layers *layers, size_t n_asked, conic_layers_
 /* Ends what is under way. */
 static void forget_asked(conic_layers *layers) {
   conic_ranges_cancel(layers->ranges);
-  for (uint32_t i = 0; i < layers->header.n_clouds && layers->store.n_asked > 0; i++) {
+  for (uint32_t i = 0; i < conic_layers_all(layers) && layers->store.n_asked > 0; i++) {
     layers->store.n_asked -= layers->store.slots[i].is_asked;
     layers->store.slots[i].is_asked = 0;
   }

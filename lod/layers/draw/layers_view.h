@@ -26,10 +26,16 @@ void conic_layers_view_init(const conic_layers_header *header, const conic_camer
 /* What a picture shows of a place at most. */
 typedef struct conic_layers_sight {
   double error_px;     /* infinite where the place reaches the near plane */
+  double px_a_length;  /* an error of this length; likewise */
   double near_iz;      /* no inverse depth of its splats is greater; infinite likewise */
   double distance;     /* of its nearest point, at least, to the eye */
   conic_window pixels; /* those that it may cover */
 } conic_layers_sight;
+
+/* An error in space, on the screen. */
+static inline double conic_layers_px(const conic_layers_sight *sight, float error) {
+  return error > 0.0f ? sight->px_a_length * (double)error : 0.0;
+}
 
 /* 0 where nothing of the place can be in the picture. */
 int conic_layers_look(const conic_layers_view *view, const conic_layers_entry *entry, conic_layers_sight *sight);

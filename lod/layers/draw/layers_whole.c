@@ -40,6 +40,7 @@ static conic_status list_place(const conic_layers *layers, uint32_t node, finest
   }
   memset(&list->cut.places[n], 0, sizeof *list->cut.places);
   list->cut.places[n].node = node;
+  list->cut.places[n].n_splats = layers->entries[node].n_drawn;
   list->chosen[n] = (uint32_t)n;
   list->cut.n++;
   return CONIC_OK;

@@ -25,6 +25,8 @@ typedef struct layers_checking {
   conic_context *context;
   const conic_layers_file *file;
   conic_layers_decoder *decoder;
+  conic_layers_header header;      /* of stand-ins */
+  conic_layers_decoder *stand_ins; /* null: there are none */
   conic_layers_defects *defects;
   uint64_t n_seen;
   int n_stages;
@@ -130,14 +132,16 @@ static void append_inherited(const layers_checking *c, const stage *above, stage
       s->samples[s->n++] = above->samples[i];
 }
 
-/* Decodes the node's cloud behind what the stage has; says what is wrong with it, or null. */
-static conic_status append_own(layers_checking *c, stage *s, const char **wrong) {
+/* Decodes a cloud to the stage's end; says what is wrong with it, or null. */
+static conic_status append_decoded(const layers_checking *c, const conic_layers_header *header,
+                                   conic_layers_decoder *decoder, const conic_layers_entry *entry, stage *s,
+                                   const char **wrong) {
   conic_layers_cloud cloud;
-  void *block = conic_memory_allocate(c->context, conic_layers_cloud_bytes(&c->file->header, s->entry, NULL), 1);
+  void *block = conic_memory_allocate(c->context, conic_layers_cloud_bytes(header, entry, NULL), 1);
   if (!block)
     return CONIC_ERROR_MEMORY;
-  conic_layers_cloud_place(&c->file->header, s->entry, NULL, block, &cloud);
-  *wrong = conic_layers_decode(c->decoder, s->entry, c->file->mapping.bytes + s->entry->offset, &cloud);
+  conic_layers_cloud_place(header, entry, NULL, block, &cloud);
+  *wrong = conic_layers_decode(decoder, entry, c->file->mapping.bytes + entry->offset, &cloud);
   if (!*wrong)
     append_cloud(&cloud, s);
   conic_memory_release(c->context, block);
@@ -161,6 +165,12 @@ static void count_defects(const layers_checking *c, const stage *s) {
   c->defects->cones += s->is_turned != 0;
 }
 
+static void tell_wrong(const layers_checking *c, uint32_t i_node, const char *wrong, uint64_t offset) {
+  conic_log(c->context, CONIC_LOG_WARNING, "%s: cloud %u: %s (at byte %llu)", c->file->name, i_node, wrong,
+            (unsigned long long)offset);
+  c->defects->clouds++;
+}
+
 /* Coincident samples that have been parted have one place. */
 static int is_parted(const layers_checking *c, const conic_layers_entry *entry) {
   return entry->depth == 3 * c->file->header.bits;
@@ -173,11 +183,8 @@ static conic_status check_below(layers_checking *c, stage *s, const char *wrong,
   conic_status status = CONIC_OK;
   if (!wrong && s->n != entry->n_drawn && !is_parted(c, entry))
     wrong = "what is drawn in its place is not as much as it says";
-  if (wrong) {
-    conic_log(c->context, CONIC_LOG_WARNING, "%s: cloud %u: %s (at byte %llu)", c->file->name, i_node, wrong,
-              (unsigned long long)entry->offset);
-    c->defects->clouds++;
-  }
+  if (wrong)
+    tell_wrong(c, i_node, wrong, entry->offset);
   fill_cells(s);
   if (entry->child == 0)
     for (int i = 0; i < c->n_stages; i++)
@@ -185,6 +192,26 @@ static conic_status check_below(layers_checking *c, stage *s, const char *wrong,
   for (uint32_t k = 0; k < 2 && entry->child != 0 && status == CONIC_OK; k++)
     status = check_layers_node(c, entry->child + k);
   count_defects(c, s);
+  return status;
+}
+
+/* A node's stand-ins against their own bounds. What is broken of these counts as if the node's were. */
+static conic_status check_stand_ins(const layers_checking *c, uint32_t i_node, stage *of_node) {
+  const conic_layers_entry *entry = &c->file->entries[c->file->header.n_clouds + i_node];
+  const char *wrong = NULL;
+  stage s;
+  if (!c->stand_ins || entry->n_samples == 0)
+    return CONIC_OK;
+  conic_status status = make_stage(c, NULL, entry, &s);
+  if (status == CONIC_OK)
+    status = append_decoded(c, &c->header, c->stand_ins, entry, &s, &wrong);
+  if (wrong)
+    tell_wrong(c, i_node, wrong, entry->offset);
+  for (size_t k = 0; k < s.n && status == CONIC_OK; k++) {
+    of_node->is_outside = of_node->is_outside || !is_inside(entry, s.samples[k].position);
+    of_node->is_turned = of_node->is_turned || !is_facing(entry, s.samples[k].normal);
+  }
+  release_stage(c->context, &s);
   return status;
 }
 
@@ -198,7 +225,9 @@ static conic_status check_layers_node(layers_checking *c, uint32_t i_node) {
     c->n_stages++;
     if (above)
       append_inherited(c, above, s);
-    status = append_own(c, s, &wrong);
+    status = append_decoded(c, &c->file->header, c->decoder, entry, s, &wrong);
+    if (status == CONIC_OK)
+      status = check_stand_ins(c, i_node, s);
     if (status == CONIC_OK)
       status = check_below(c, s, wrong, i_node);
     c->n_stages--;
@@ -222,10 +251,17 @@ conic_status conic_layers_check(conic_context *context, const char *path, conic_
     c->context = context;
     c->file = &file;
     c->defects = defects;
-    status = check_layers_node(c, 0);
+    c->header = file.header;
+    if (file.header.version >= 3 &&
+        conic_layers_stand_in_schema(&file.header.schema, file.header.quantum, &c->header.schema))
+      status = conic_layers_decoder_create(context, &c->header, NULL, &c->stand_ins);
   }
-  if (c)
+  if (status == CONIC_OK)
+    status = check_layers_node(c, 0);
+  if (c) {
+    conic_layers_decoder_destroy(c->stand_ins);
     conic_layers_decoder_destroy(c->decoder);
+  }
   conic_memory_release(context, c);
   conic_layers_file_close(&file);
   return status;

@@ -26,10 +26,16 @@ static const conic_file_field header_fields[] = {
     IN_HEADER(schema.n),     IN_HEADER(up),           IN_HEADER(epsg)};
 
 static const conic_file_field entry_fields[] = {
-    IN_ENTRY(key),      IN_ENTRY(offset), IN_ENTRY(sum),     IN_ENTRY(n_place), IN_ENTRY(n_bytes), IN_ENTRY(n_samples),
-    IN_ENTRY(parent),   IN_ENTRY(child),  IN_ENTRY(n_drawn), IN_ENTRY(level),   IN_ENTRY(depth),   IN_ENTRY(spacing),
-    IN_ENTRY(covering), IN_ENTRY(radius), IN_ENTRY(error),   IN_ENTRY(center),  IN_ENTRY(sphere),  IN_ENTRY(axis),
-    IN_ENTRY(cone),     IN_ENTRY(growth), IN_ENTRY(reach)};
+    IN_ENTRY(key),       IN_ENTRY(offset),  IN_ENTRY(sum),      IN_ENTRY(n_place), IN_ENTRY(n_bytes),
+    IN_ENTRY(n_samples), IN_ENTRY(parent),  IN_ENTRY(child),    IN_ENTRY(n_drawn), IN_ENTRY(level),
+    IN_ENTRY(depth),     IN_ENTRY(spacing), IN_ENTRY(covering), IN_ENTRY(radius),  IN_ENTRY(error),
+    IN_ENTRY(center),    IN_ENTRY(sphere),  IN_ENTRY(axis),     IN_ENTRY(cone)};
+
+/* What follows, before version 3 and from it on. */
+static const conic_file_field growth_fields[] = {IN_ENTRY(growth), IN_ENTRY(reach)};
+static const conic_file_field stand_in_fields[] = {IN_ENTRY(stand_in_sum),   IN_ENTRY(stand_in_bytes),
+                                                   IN_ENTRY(stand_in_error), IN_ENTRY(stand_in_radius),
+                                                   IN_ENTRY(n_stand_ins),    IN_ENTRY(stand_in_cone)};
 
 #define IN_ATTRIBUTE(member) CONIC_FILE_FIELD(conic_layers_attribute, member)
 
@@ -41,8 +47,14 @@ static const conic_file_field attribute_fields[] = {IN_ATTRIBUTE(name),    IN_AT
 enum {
   N_HEADER_FIELDS = sizeof header_fields / sizeof *header_fields,
   N_ENTRY_FIELDS = sizeof entry_fields / sizeof *entry_fields,
+  N_GROWTH_FIELDS = sizeof growth_fields / sizeof *growth_fields,
+  N_STAND_IN_FIELDS = sizeof stand_in_fields / sizeof *stand_in_fields,
   N_ATTRIBUTE_FIELDS = sizeof attribute_fields / sizeof *attribute_fields
 };
+
+static size_t entry_bytes(const conic_layers_header *header) {
+  return header->version < 3 ? CONIC_LAYERS_OLD_ENTRY_BYTES : CONIC_LAYERS_ENTRY_BYTES;
+}
 
 static int is_finite_within(double value, double limit) {
   return value >= -limit && value <= limit; /* false where it is not a number */
@@ -57,6 +69,8 @@ static const char *check_counts(const conic_layers_header *header) {
     return "more attributes than can be read";
   if (header->flags & ~(uint32_t)CONIC_LAYERS_ALL_FLAGS)
     return "unknown flags";
+  if (header->n_clouds > UINT32_MAX / 2)
+    return "more clouds than can be read";
   if (header->n_clouds == 0 || header->n_samples == 0)
     return "it holds no sample";
   if (header->n_levels == 0 || header->n_levels > CONIC_LAYERS_MOST_LEVELS)
@@ -138,8 +152,7 @@ void conic_layers_write_header(const conic_layers_header *header, unsigned char 
 }
 
 uint64_t conic_layers_index_bytes(const conic_layers_header *header) {
-  return (uint64_t)header->schema.n * CONIC_LAYERS_ATTRIBUTE_BYTES +
-         (uint64_t)header->n_clouds * CONIC_LAYERS_ENTRY_BYTES;
+  return (uint64_t)header->schema.n * CONIC_LAYERS_ATTRIBUTE_BYTES + (uint64_t)header->n_clouds * entry_bytes(header);
 }
 
 int conic_layers_is_file(const char *path) {
@@ -148,8 +161,8 @@ int conic_layers_is_file(const char *path) {
 
 /* The numbers that one entry states, each by itself. */
 static const char *check_entry(const conic_layers_header *header, const conic_layers_entry *entry) {
-  const float lengths[] = {entry->spacing, entry->covering, entry->radius, entry->error,
-                           entry->sphere,  entry->growth,   entry->reach};
+  const float lengths[] = {entry->spacing, entry->covering, entry->radius,         entry->error,          entry->sphere,
+                           entry->growth,  entry->reach,    entry->stand_in_error, entry->stand_in_radius};
   uint64_t n_keys_bits = 3 * (uint64_t)header->bits;
   if (entry->depth > n_keys_bits || entry->level >= header->n_levels)
     return "its depth or level is out of range";
@@ -161,6 +174,9 @@ static const char *check_entry(const conic_layers_header *header, const conic_la
   if (entry->n_place == 0 || entry->n_samples > entry->n_place || entry->n_drawn > entry->n_place ||
       entry->n_samples > entry->n_drawn)
     return "its counts contradict each other";
+  if (entry->n_stand_ins > entry->n_place || entry->n_stand_ins > header->most_samples ||
+      entry->stand_in_bytes > header->most_bytes || !entry->n_stand_ins != !entry->stand_in_bytes)
+    return "its stand-ins contradict each other";
   for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++)
     if (!(lengths[i] >= 0.0f && (double)lengths[i] <= 8.0 * farthest))
       return "a length is out of range";
@@ -168,7 +184,7 @@ static const char *check_entry(const conic_layers_header *header, const conic_la
     if (!is_finite_within((double)entry->center[axis], 8.0 * farthest) ||
         !is_finite_within((double)entry->axis[axis], 1.001))
       return "its sphere or cone is out of range";
-  if (!is_finite_within((double)entry->cone, 1.0))
+  if (!is_finite_within((double)entry->cone, 1.0) || entry->stand_in_cone > 2 * 32767)
     return "its cone is out of range";
   return NULL;
 }
@@ -212,6 +228,8 @@ static const char *check_order(const conic_layers_entry *entries, uint32_t i, ui
 
 static const char *check_tree(const conic_layers_header *header, const conic_layers_entry *entries, uint32_t *i) {
   uint64_t offset = CONIC_LAYERS_HEADER_BYTES + conic_layers_index_bytes(header), n_samples = 0;
+  for (uint32_t k = 0; k < header->n_clouds; k++)
+    offset += entries[k].stand_in_bytes;
   for (*i = 0; *i < header->n_clouds; ++*i) {
     const conic_layers_entry *entry = &entries[*i];
     const char *wrong = check_entry(header, entry);
@@ -257,17 +275,45 @@ static conic_status read_attribute_table(conic_context *context, const char *nam
                : CONIC_OK;
 }
 
-/* An entry of version 1 has one outline for all samples. */
+/* An entry of version 1 has one outline for all samples, and of version 2 it states how they grow. */
 static int read_entry(const conic_layers_header *header, const unsigned char *bytes, conic_layers_entry *entry) {
   size_t used = conic_file_fields_bytes(entry_fields, N_ENTRY_FIELDS);
+  memset(entry, 0, sizeof *entry);
   conic_file_fields_read(entry_fields, N_ENTRY_FIELDS, bytes, entry);
-  int is_zeroed = is_zero(bytes + used, CONIC_LAYERS_ENTRY_BYTES - used);
-  if (header->version == 1) {
-    is_zeroed = is_zero(bytes + used - 8, CONIC_LAYERS_ENTRY_BYTES - used + 8);
-    entry->growth = 0.0f;
-    entry->reach = entry->radius;
+  if (header->version == 2)
+    conic_file_fields_read(growth_fields, N_GROWTH_FIELDS, bytes + used, entry);
+  if (header->version >= 3) {
+    conic_file_fields_read(stand_in_fields, N_STAND_IN_FIELDS, bytes + used, entry);
+    entry->growth = entry->child ? 0.0f : 1.0f;
+    entry->reach = entry->child ? entry->covering : 0.0f;
   }
-  return is_zeroed;
+  if (header->version > 1)
+    return 1;
+  entry->reach = entry->radius;
+  return is_zero(bytes + used, CONIC_LAYERS_OLD_ENTRY_BYTES - used);
+}
+
+/* Makes the entries of stand-ins, whose bytes come before the clouds'. Their places were moved by less than a step. */
+static void list_stand_ins(const conic_layers_header *header, conic_layers_entry *entries) {
+  uint64_t offset = CONIC_LAYERS_HEADER_BYTES + conic_layers_index_bytes(header);
+  for (uint32_t i = 0; i < header->n_clouds; i++) {
+    const conic_layers_entry *entry = &entries[i];
+    conic_layers_entry *to = &entries[header->n_clouds + i];
+    float wider = entry->stand_in_radius > entry->radius ? entry->stand_in_radius - entry->radius : 0.0f;
+    *to = *entry;
+    to->offset = offset;
+    to->sum = entry->stand_in_sum;
+    to->n_bytes = entry->stand_in_bytes;
+    to->n_samples = to->n_drawn = entry->n_stand_ins;
+    to->child = to->n_stand_ins = 0;
+    to->growth = 1.0f;
+    to->reach = 0.0f;
+    to->error = entry->stand_in_error;
+    to->radius = entry->stand_in_radius;
+    to->cone = (float)entry->stand_in_cone / 32767.0f - 1.0f;
+    to->sphere = (entry->sphere + wider) * 1.000001f + (float)header->quantum;
+    offset += to->n_bytes;
+  }
 }
 
 conic_status conic_layers_read_index(conic_context *context, const char *name, conic_layers_header *header,
@@ -279,7 +325,7 @@ conic_status conic_layers_read_index(conic_context *context, const char *name, c
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: the index is damaged: its sum is another (at byte %d)", name,
                       CONIC_LAYERS_HEADER_BYTES);
   for (uint32_t i = 0; i < header->n_clouds; i++) {
-    const unsigned char *from = bytes + first + (size_t)i * CONIC_LAYERS_ENTRY_BYTES;
+    const unsigned char *from = bytes + first + i * entry_bytes(header);
     if (!read_entry(header, from, &entries[i]))
       return conic_fail(context, CONIC_ERROR_INPUT, "%s: cloud %u: bytes that should be zero are not (at byte %llu)",
                         name, i, (unsigned long long)(from - bytes) + CONIC_LAYERS_HEADER_BYTES);
@@ -287,7 +333,9 @@ conic_status conic_layers_read_index(conic_context *context, const char *name, c
   const char *wrong = check_tree(header, entries, &at);
   if (wrong)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: cloud %u: %s (at byte %llu)", name, at, wrong,
-                      (unsigned long long)at * CONIC_LAYERS_ENTRY_BYTES + CONIC_LAYERS_HEADER_BYTES + first);
+                      (unsigned long long)at * entry_bytes(header) + CONIC_LAYERS_HEADER_BYTES + first);
+  if (header->version >= 3)
+    list_stand_ins(header, entries);
   return read_attribute_table(context, name, header, bytes);
 }
 
@@ -302,9 +350,11 @@ void conic_layers_write_table(const conic_layers_header *header, unsigned char *
 }
 
 void conic_layers_write_entries(const conic_layers_entry *entries, size_t n, unsigned char *bytes) {
-  memset(bytes, 0, n * CONIC_LAYERS_ENTRY_BYTES);
-  for (size_t i = 0; i < n; i++)
-    conic_file_fields_write(entry_fields, N_ENTRY_FIELDS, &entries[i], bytes + i * CONIC_LAYERS_ENTRY_BYTES);
+  const size_t used = conic_file_fields_bytes(entry_fields, N_ENTRY_FIELDS);
+  for (size_t i = 0; i < n; i++, bytes += CONIC_LAYERS_ENTRY_BYTES) {
+    conic_file_fields_write(entry_fields, N_ENTRY_FIELDS, &entries[i], bytes);
+    conic_file_fields_write(stand_in_fields, N_STAND_IN_FIELDS, &entries[i], bytes + used);
+  }
 }
 
 double conic_layers_position_error(const conic_layers_header *header) {

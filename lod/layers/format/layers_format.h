@@ -6,9 +6,10 @@
 #include "lod/layers/format/layers_schema.h"
 
 enum {
-  CONIC_LAYERS_VERSION = 2, /* that is written; 1 is read too */
+  CONIC_LAYERS_VERSION = 3, /* that is written; 1 and 2 are read too */
   CONIC_LAYERS_HEADER_BYTES = 256,
-  CONIC_LAYERS_ENTRY_BYTES = 112
+  CONIC_LAYERS_ENTRY_BYTES = 128,
+  CONIC_LAYERS_OLD_ENTRY_BYTES = 112 /* before version 3 */
 };
 
 /* What a reader believes of a file: more is refused. */
@@ -64,6 +65,11 @@ typedef struct conic_layers_entry {
   float axis[3], cone;     /* unit; the least cosine of a normal of its place to it; -1: no bound */
   float growth, reach; /* a sample of T is drawn as large as it is itself, or as reach + growth × its own outline where
                           that is more, up to the radius */
+  /* What is drawn in place of T in a coarse picture: circles, whose bytes lie before all clouds'. */
+  uint64_t stand_in_sum; /* conic_checksum of these bytes */
+  uint32_t stand_in_bytes;
+  float stand_in_error, stand_in_radius; /* as those above, where they are drawn */
+  uint16_t n_stand_ins, stand_in_cone;   /* the cone in steps of 1/32767, from −1 up */
 } conic_layers_entry;
 
 /* Whether a header of CONIC_LAYERS_HEADER_BYTES is as it was written, by its sum. */
@@ -77,8 +83,14 @@ conic_status conic_layers_read_header(conic_context *context, const char *name, 
 /* The index lies behind the header: the table of attributes, then n_clouds × CONIC_LAYERS_ENTRY_BYTES. */
 uint64_t conic_layers_index_bytes(const conic_layers_header *header);
 
+/* How many entries there are in memory: a cloud's, and as many again where clouds have stand-ins. Those of cloud i are
+ * an entry n_clouds + i, as if a leaf had them as its cloud. */
+static inline size_t conic_layers_all_entries(const conic_layers_header *header) {
+  return (header->version < 3 ? 1 : 2) * (size_t)header->n_clouds;
+}
+
 /* Bytes to index: checks the sum, every range, and that the entries are a tree in the file's order; `entries` has room
- * for n_clouds. Fills in the header's schema. Errors: INPUT, MEMORY. */
+ * for conic_layers_all_entries. Fills in the header's schema. Errors: INPUT, MEMORY. */
 conic_status conic_layers_read_index(conic_context *context, const char *name, conic_layers_header *header,
                                      const unsigned char *bytes, conic_layers_entry *entries);
 
@@ -100,6 +112,11 @@ static inline float conic_layers_outline(const conic_layers_entry *entry, float 
 /* The last key of a node's place. */
 static inline uint64_t conic_layers_last_key(const conic_layers_header *header, const conic_layers_entry *entry) {
   return entry->key + ((UINT64_C(1) << (3 * header->bits - entry->depth)) - 1);
+}
+
+/* A cloud's bytes and its stand-ins'. */
+static inline uint64_t conic_layers_bytes_together(const conic_layers_entry *entry) {
+  return (uint64_t)entry->n_bytes + entry->stand_in_bytes;
 }
 
 /* How far rounding moved a sample at most. */

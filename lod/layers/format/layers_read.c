@@ -12,7 +12,7 @@ static conic_status read_tables(conic_layers_file *file) {
     return conic_fail(file->context, CONIC_ERROR_INPUT, "%s: %zu bytes, where the header tells of %llu (at byte %zu)",
                       file->name, file->mapping.n_bytes, (unsigned long long)file->header.file_bytes,
                       file->mapping.n_bytes);
-  file->entries = conic_memory_allocate(file->context, file->header.n_clouds, sizeof *file->entries);
+  file->entries = conic_memory_allocate(file->context, conic_layers_all_entries(&file->header), sizeof *file->entries);
   if (!file->entries)
     return CONIC_ERROR_MEMORY;
   return conic_layers_read_index(file->context, file->name, &file->header,
@@ -65,12 +65,10 @@ static void describe_header(const conic_layers_header *header, conic_layers_info
   info->bits_position = bits_a_sample(header->position_bytes, header);
   info->bits_normal = bits_a_sample(header->normal_bytes, header);
   info->bits_color = bits_a_sample(header->color_bytes, header);
-  uint64_t n_more = 0;
-  for (uint32_t i = 0; i < header->schema.n; i++)
-    n_more += header->schema.list[i].n_bytes;
-  n_more -= header->position_bytes + header->normal_bytes + header->color_bytes;
-  info->bits_more = bits_a_sample(n_more, header);
-  info->bits_index = bits_a_sample(CONIC_LAYERS_HEADER_BYTES + conic_layers_index_bytes(header), header);
+  uint64_t n_index = CONIC_LAYERS_HEADER_BYTES + conic_layers_index_bytes(header);
+  uint64_t n_known = n_index + header->position_bytes + header->normal_bytes + header->color_bytes;
+  info->bits_more = header->file_bytes > n_known ? bits_a_sample(header->file_bytes - n_known, header) : 0.0;
+  info->bits_index = bits_a_sample(n_index, header);
 }
 
 conic_status conic_layers_describe(conic_context *context, const char *path, conic_layers_info *info) {

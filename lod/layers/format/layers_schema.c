@@ -193,3 +193,20 @@ void conic_layers_number_put(const conic_layers_attribute *attribute, double val
   }
   memcpy(to, bytes, layers_number_bytes(attribute->type));
 }
+
+int conic_layers_stand_in_schema(const conic_layers_schema *schema, double quantum, conic_layers_schema *stand_ins) {
+  enum { KEPT = 3, OCTAVES_BELOW = 8, FRACTION_BITS = 23 };
+  memset(stand_ins, 0, sizeof *stand_ins);
+  if (conic_layers_schema_find(schema, CONIC_LAYERS_OPACITY) >= 0)
+    return 0;
+  conic_layers_schema_add(stand_ins, CONIC_LAYERS_POSITION, "position", 0);
+  conic_layers_schema_add(stand_ins, CONIC_LAYERS_NORMAL, "normal", 0);
+  if (conic_layers_schema_find(schema, CONIC_LAYERS_COLOR) >= 0)
+    conic_layers_schema_add(stand_ins, CONIC_LAYERS_COLOR, "color", 0);
+  conic_layers_attribute *sizes = conic_layers_schema_add(stand_ins, CONIC_LAYERS_SIZE, "size", KEPT);
+  double offset = (double)(conic_bits_of_float((float)quantum) >> (FRACTION_BITS - KEPT)) - (OCTAVES_BELOW << KEPT);
+  sizes->offset = offset > 0.0 ? offset : 0.0;
+  if (conic_layers_schema_find(schema, CONIC_LAYERS_DOT) >= 0)
+    conic_layers_schema_add(stand_ins, CONIC_LAYERS_DOT, "dot", 0);
+  return 1;
+}

@@ -113,6 +113,9 @@ void conic_layers_schema_narrow(conic_layers_schema *schema, const unsigned char
 /* Where attributes lie in records, for a table that was read. Null, or what is wrong with it. */
 const char *conic_layers_schema_lay_out(conic_layers_schema *schema);
 
+/* What stand-ins have, where samples have what `schema` says. 0: there are none of these. */
+int conic_layers_stand_in_schema(const conic_layers_schema *schema, double quantum, conic_layers_schema *stand_ins);
+
 /* "uint8" …, the name of a number's type; null for one that is none. And back; −1: none. */
 const char *conic_layers_number_name(unsigned type);
 int conic_layers_number_of(const char *name);
