@@ -123,10 +123,47 @@ def decode_attribute(attribute, streams, n):
     return {attribute["name"]: values * attribute["scale"] + attribute["offset"]}
 
 
+def read_stand_ins(data, at, entry, table, zstd, node):
+    """Those of an entry, whose bytes begin at `at`: within its place, and no larger than it says. Returns their end."""
+    size, = struct.unpack_from("<I", data, entry + 112)
+    error, most = struct.unpack_from("<2f", data, entry + 116)
+    n, cone = struct.unpack_from("<2H", data, entry + 124)
+    quantum, = struct.unpack_from("<d", data, 64)
+    bits = struct.unpack("<I", struct.pack("<f", quantum))[0]
+    kept = [{"kind": 0, "streams": 2}, {"kind": 1, "streams": 2}, {"kind": 2, "streams": 3},
+            {"kind": 3, "streams": 1, "type": 3, "offset": max((bits >> 20) - 64, 0)}, {"kind": 6, "streams": 1}]
+    have = {a["kind"] for a in table} | {1, 3}
+    kept = [a for a in kept if a["kind"] in have]
+    if 5 in have:
+        if size or n:
+            fail("samples with opacities have stand-ins")
+        return at
+    sizes = struct.unpack_from("<%dI" % sum(a["streams"] for a in kept), data, at)
+    here, k = at + 4 * len(sizes), 0
+    for attribute in kept:
+        streams = []
+        for packed in sizes[k : k + attribute["streams"]]:
+            piece = data[here : here + (packed & 0x7FFFFFFF)]
+            streams.append(zstd.unpack(piece, 8 * n + 16) if packed >> 31 else piece)
+            here += len(piece)
+        k += attribute["streams"]
+        if attribute["kind"] == 0:
+            keys = join_keys(streams[0], streams[1], node["first"])
+            if len(keys) != n or sorted(keys) != keys or not (n and keys[-1] <= node["last"]):
+                fail("stand-ins lie outside of their place")
+        else:
+            values = decode_attribute(dict({"name": "size"}, **attribute), streams, n)
+            if attribute["kind"] == 3 and not np.max(list(values.values())[0]) <= most:
+                fail("a stand-in is larger than the greatest")
+    if here != at + size or not (0 < n <= node["drawn"] and error > 0 and cone <= 65534):
+        fail("stand-ins are not as their entry says")
+    return here
+
+
 def read(path, zstd):
     data = open(path, "rb").read()
-    if data[:8] != b"CONICLP\n" or struct.unpack_from("<I", data, 8)[0] != 2:
-        fail("no .lpc of version 2")
+    if data[:8] != b"CONICLP\n" or struct.unpack_from("<I", data, 8)[0] != 3:
+        fail("no .lpc of version 3")
     n_samples, n_clouds, levels, bits = struct.unpack_from("<QIII", data, 16)
     origin = np.array(struct.unpack_from("<3d", data, 40))
     quantum, = struct.unpack_from("<d", data, 64)
@@ -140,17 +177,19 @@ def read(path, zstd):
                       "bytes": struct.unpack_from("<Q", data, at + 104)[0]})
         at += 112
     sums, parts, total, nodes = [0] * n_attributes, {}, 0, []
+    standing = at + 128 * n_clouds
     for c in range(n_clouds):
-        entry = at + 112 * c
+        entry = at + 128 * c
         key, offset, _, n_place = struct.unpack_from("<4Q", data, entry)
         n_bytes, n = struct.unpack_from("<2I", data, entry + 32)
         parent, child, n_drawn = struct.unpack_from("<3I", data, entry + 40)
         depth, = struct.unpack_from("<H", data, entry + 54)
         spacing, covering, most, error = struct.unpack_from("<4f", data, entry + 56)
-        growth, reach = struct.unpack_from("<2f", data, entry + 104)
+        growth, reach = (0, covering) if child else (1, 0)
         nodes.append({"first": key, "last": key + (1 << (3 * bits - depth)) - 1, "parent": parent, "child": child,
                       "samples": n_place, "drawn": n_drawn, "spacing": spacing, "covering": covering, "most": most,
                       "growth": growth, "reach": reach, "error": error})
+        standing = read_stand_ins(data, standing, entry, table, zstd, nodes[-1])
         n_streams = sum(a["streams"] for a in table)
         sizes = struct.unpack_from("<%dI" % n_streams, data, offset)
         here, k, cloud = offset + 4 * n_streams, 0, {}
@@ -170,8 +209,6 @@ def read(path, zstd):
                 cloud.update(decode_attribute(attribute, streams, n))
         if here != offset + n_bytes or len(keys) != n or sorted(keys) != keys:
             fail("a cloud is not as long as it says")
-        if child == 0 and (growth != 1 or reach != 0):
-            fail("a leaf does not draw its samples as they are")
         total += n
         cloud["key"], cloud["cloud"] = keys, [c] * n
         for name, values in cloud.items():

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Files of version 2 as a stranger reads them, who has their page alone: every sample once, with all that it came with.
+# Files of version 3 as a stranger reads them, who has their page alone: every sample once, with all that it came with.
 set -uo pipefail
 
 source "$1/tests/support/python.bash"

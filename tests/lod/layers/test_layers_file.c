@@ -117,7 +117,7 @@ static void test_bounds(conic_context *context, bytes file) {
   conic_layers_header header;
   CHECK_OK(conic_layers_read_header(context, "made", file.at, file.n, &header));
   size_t n_bytes = CONIC_LAYERS_HEADER_BYTES + (size_t)conic_layers_index_bytes(&header);
-  conic_layers_entry *entries = calloc(header.n_clouds, sizeof *entries);
+  conic_layers_entry *entries = calloc(conic_layers_all_entries(&header), sizeof *entries);
   unsigned char *spoiled = malloc(file.n);
   if (!entries || !spoiled)
     exit(1);
