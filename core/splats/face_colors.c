@@ -6,7 +6,7 @@
 #include "core/splats/raw_colors.h"
 
 /* Half of the table's places are used at most; further colours get the material of the last one. */
-enum { TABLE_BITS = 17, TABLE_SIZE = 1 << TABLE_BITS, MOST_COLORS = TABLE_SIZE / 2 };
+enum { MOST_BITS = 17, MOST_COLORS = 1 << (MOST_BITS - 1) };
 
 conic_status conic_face_colors_take(conic_context *context, conic_face_colors *colors, const conic_model *model,
                                     size_t first, const double raw[3]) {
@@ -33,12 +33,12 @@ static uint32_t code_of(const float linear[3]) {
 }
 
 /* The material of a colour. A place of the table holds a code and 1, and a material; 0: nothing. */
-static conic_status find_material(conic_context *context, uint32_t *table, conic_faces *faces, const float linear[3],
-                                  uint32_t *found) {
+static conic_status find_material(conic_context *context, uint32_t *table, unsigned bits, conic_faces *faces,
+                                  const float linear[3], uint32_t *found) {
   const uint32_t code = code_of(linear) + 1;
-  uint32_t place = (code * UINT32_C(2654435761)) >> (32 - TABLE_BITS);
+  uint32_t place = (code * UINT32_C(2654435761)) >> (32 - bits);
   while (table[2 * place] && table[2 * place] != code)
-    place = (place + 1) % TABLE_SIZE;
+    place = (place + 1) & ((UINT32_C(1) << bits) - 1);
   if (!table[2 * place] && faces->n_made < MOST_COLORS) {
     const conic_material material = {.color = {linear[0], linear[1], linear[2]}};
     table[2 * place] = code;
@@ -64,14 +64,17 @@ static void color_at(const conic_face_colors *colors, size_t i, float linear[3])
 
 static conic_status give_to_faces(conic_context *context, const conic_face_colors *colors, const conic_model *model) {
   conic_faces *faces = model->faces;
-  uint32_t *table = conic_memory_allocate_zeroed(context, (size_t)2 * TABLE_SIZE, sizeof *table);
+  unsigned bits = 4;
+  while (bits < MOST_BITS && (size_t)1 << bits < 2 * model->n_triangles)
+    bits++;
+  uint32_t *table = conic_memory_allocate_zeroed(context, (size_t)2 << bits, sizeof *table);
   conic_status status = table ? CONIC_OK : CONIC_ERROR_MEMORY;
   while (status == CONIC_OK && faces->count < model->n_triangles)
     status = conic_faces_add(context, faces, NULL, NULL);
   for (size_t i = 0; i < faces->count && status == CONIC_OK; i++) {
     float linear[3];
     color_at(colors, i, linear);
-    status = find_material(context, table, faces, linear, &faces->material[i]);
+    status = find_material(context, table, bits, faces, linear, &faces->material[i]);
   }
   faces->current_material = (uint32_t)faces->n_made; /* further ones are white */
   conic_memory_release(context, table);

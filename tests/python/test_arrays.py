@@ -19,7 +19,8 @@ def write_ply(path, names, types, columns, faces=None):
         table[name] = column
     ply = {"<f4": "float", "<f8": "double", "u1": "uchar"}
     with open(path, "wb") as file:
-        lines = ["ply", "format binary_little_endian 1.0", f"element vertex {len(table)}"]
+        lines = ["ply", "format binary_little_endian 1.0", "comment conic has linear colours",
+                 f"element vertex {len(table)}"]
         lines += [f"property {ply[kind]} {name}" for name, kind in zip(names, types)]
         if faces is not None:
             lines += [f"element face {len(faces)}", "property list uchar uint vertex_indices"]
