@@ -72,9 +72,27 @@ cli_facts cli_build_facts(const conic_model *model) {
          (conic_model_has_fractions(model) ? CLI_FACT(FRACTIONS) : 0);
 }
 
+/* Only the whole file tells: it is read once more where --colors is given. */
+static int may_have_fractions(const cli_build *build, const char *path) {
+  conic_read_options options;
+  conic_model model;
+  if (!build->colors_are || strcmp(path, "-") == 0)
+    return 1;
+  cli_build_reading(build, &options);
+  options.where = NULL;
+  if (cli_points_are_hierarchy(path) || conic_layers_is_file(path))
+    return 0;
+  if (conic_model_read(build->session->context, path, &options, &model) != CONIC_OK)
+    return 1; /* reading it is to say more */
+  const int has = conic_model_has_fractions(&model);
+  conic_model_release(build->session->context, &model);
+  return has;
+}
+
 cli_facts cli_build_facts_of_file(const cli_build *build, const char *path) {
   const int may_be_text = !build->columns || cli_points_may_be_text(build->session->context, path);
-  return CLI_SOURCE_FACTS & ~(may_be_text ? 0 : CLI_FACT(TEXT));
+  return CLI_SOURCE_FACTS &
+         ~((may_be_text ? 0 : CLI_FACT(TEXT)) | (may_have_fractions(build, path) ? 0 : CLI_FACT(FRACTIONS)));
 }
 
 int cli_build_parse(cli_build *build, const cli_option *options, int n_options, int argc, char **argv,
