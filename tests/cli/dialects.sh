@@ -178,7 +178,7 @@ pcd '$_ = lc unless /TYPE/' > lower.pcd
 for file in usual columns upper lower; do
   facts $file.pcd '^points +2$' '^left out +1 points that were not measured$' '^bounds +0 0 0 to 1 2 3$'
 done
-run 0 layer usual.pcd -o a.lpc # where points are read some at a time
+run 0 layer usual.pcd --quantum 0.01 -o a.lpc # where points are read some at a time
 tr '\n' '\r' < upper.stl > returns.stl
 tr '\n' ' ' < upper.stl > line.stl
 printf 'solid vertex 1 2\n%s' "$(sed 1d upper.stl)" > named.stl
@@ -208,9 +208,9 @@ fi
 las() { # WELL-KNOWN TEXT
   perl -e 'my $text = shift() . "\0"; my $at = 375 + 54 + length $text;
     my $head = pack "a4vva8x8CCa32a32vvvVVCvVV5d12Q<Q<VQ<Q<15", "LASF", 0, 16, "", 1, 4, "", "", 1, 2026, 375, $at, 1, 6, 30,
-      (0) x 6, (1) x 3, (0) x 9, 0, 0, 0, 3, (0) x 15;
+      (0) x 6, (1) x 3, (0) x 9, 0, 0, 0, 100, (0) x 15;
     print $head, pack("va16vva32", 0, "LASF_Projection", 2112, length $text, ""), $text;
-    print pack "V3x18", $_, 2 * $_ % 3, 0 for 0 .. 2' "$1"
+    print pack "V3x18", $_ % 10, int $_ / 10, 0 for 0 .. 99' "$1"
 }
 datum='DATUM["WGS_1984",SPHEROID["WGS84",6378137,298.257223563]],PRIMEM["Greenwich",0],UNIT["Degree",0.0174]'
 utm='PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",15],PARAMETER["scale_factor",0.9996],PARAMETER["false_easting",500000],PARAMETER["false_northing",0],UNIT["metre",1]'
