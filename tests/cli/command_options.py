@@ -37,7 +37,7 @@ CASES = {
             "--columns": "y,x,z", "--colors": "linear"},
     "hybrid": {"--allow-outside": None, "--colors": "linear", "-o": "more.chy", "--phase1": "1", "--phase2": "-2", "--largest": "0.001", "--density": "4",
                "--most-error": "0", "--sampling": "box", "--texture": "texture.png", "--max-texture": "3", "--smooth": None,
-               "--crease": "0", "--cutoff": "2", "--memory": "64", "--single": None, "--color-by": "height",
+               "--crease": "0", "--cutoff": "2", "--memory": "256", "--single": None, "--color-by": "height",
                "--ramp": "heat", "--up": "x"},
     "diff": {"--heatmap": "map.png", "--heatmap-of": "flip", "--max-abs": "9", "--min-psnr": "1", "--min-ssim": "-1",
              "--max-flip": "1", "--display": "both", "--reduce": None, "--match": "order", "--subset": None,

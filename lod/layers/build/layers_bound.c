@@ -292,9 +292,16 @@ static void reach_below(void *data, size_t i_item) {
   raise_most(b, most);
 }
 
+/* The cosine of the angle between two axes. They are floats, and so not of length 1: beside a cosine near 1, that would
+ * be much of the angle. */
+static double cosine_between(const double a[3], const double b[3]) {
+  double length2 = conic_dot(a, a) * conic_dot(b, b);
+  return length2 > 0.0 ? conic_dot(a, b) / sqrt(length2) : -1.0;
+}
+
 static void widen_cone(void *data, const conic_layers_node *below) {
   bounding *b = data;
-  double cosine = cosine_of_sum(conic_dot(b->node->axis, below->axis), below->cone);
+  double cosine = cosine_of_sum(cosine_between(b->node->axis, below->axis), below->cone);
   b->node->cone = cosine < b->node->cone ? cosine : b->node->cone;
 }
 

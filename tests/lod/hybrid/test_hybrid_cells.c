@@ -257,7 +257,7 @@ static void test_refused_meshes(conic_context *context) {
   CHECK(conic_hybrid_build_file(context, path, path, &options, &streaming, &hybrid, NULL) == CONIC_ERROR_INPUT);
   CHECK(!hybrid && strstr(files_message, "no face that could be drawn") != NULL);
   streaming.memory_bytes = 1 << 20;
-  CHECK(conic_hybrid_build_file(context, path, path, &options, &streaming, &hybrid, NULL) == CONIC_ERROR_ARGUMENT);
+  CHECK(conic_hybrid_build_file(context, path, path, &options, &streaming, &hybrid, NULL) == CONIC_ERROR_MEMORY);
   CHECK(unlink(files_path("flat.obj")) == 0 && unlink(files_path("empty.ply")) == 0);
 }
 
