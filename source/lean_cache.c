@@ -126,8 +126,21 @@ static uint64_t look_at_kept(const char *folder, const char *path, char oldest[C
   return n_bytes;
 }
 
-void conic_lean_cache_trim(const char *folder, const char *path) {
+static void trim(const char *folder, const char *path) {
   char oldest[CONIC_LEAN_CACHE_PATH];
   while (look_at_kept(folder, path, oldest) > CONIC_LEAN_CACHE_BYTES && *oldest && conic_disk_remove(oldest))
     continue;
+}
+
+conic_status conic_lean_cache_write(conic_context *context, const char *folder, const char *path,
+                                    conic_lean_cache_writer *write, void *built) {
+  const conic_context_options before = context->options;
+  context->options.log = NULL;
+  conic_status status = write(built, path);
+  context->options.log = before.log;
+  trim(folder, path);
+  if (status == CONIC_OK || status == CONIC_ERROR_MEMORY || status == CONIC_ERROR_CANCELLED)
+    return status;
+  conic_log(context, CONIC_LOG_WARNING, "%s: what was built is not kept: it cannot be written", path);
+  return CONIC_OK;
 }

@@ -19,5 +19,8 @@ typedef conic_status conic_lean_cache_reader(conic_context *context, const char 
 conic_status conic_lean_cache_read(conic_context *context, const char *path, conic_lean_cache_reader *read,
                                    void **built);
 
-/* After a file was written: leaves no more than the bytes above. */
-void conic_lean_cache_trim(const char *folder, const char *path);
+/* Writes such a file by `write`, and leaves no more than the bytes above. Where that fails, as on a full disk, there is
+ * a warning: the picture does not need the file. Errors: MEMORY, CANCELLED. */
+typedef conic_status conic_lean_cache_writer(void *built, const char *path);
+conic_status conic_lean_cache_write(conic_context *context, const char *folder, const char *path,
+                                    conic_lean_cache_writer *write, void *built);

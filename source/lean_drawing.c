@@ -31,6 +31,14 @@ static conic_status read_levels(conic_context *context, const char *path, void *
   return conic_hybrid_read(context, path, (conic_hybrid **)hybrid);
 }
 
+static conic_status write_octree(void *octree, const char *path) {
+  return conic_octree_write(octree, path);
+}
+
+static conic_status write_levels(void *hybrid, const char *path) {
+  return conic_hybrid_write(hybrid, path);
+}
+
 /* What the cache has of a set; *kept stays null where there is nothing, or no cache. */
 static conic_status find_kept(const lean_choosing *c, const conic_drawing *of, const char *ending,
                               conic_lean_cache_reader *read, char path[CONIC_LEAN_CACHE_PATH], void **kept) {
@@ -69,9 +77,7 @@ static conic_status need_octree(const lean_choosing *c) {
   if (status == CONIC_OK && !kept)
     status = conic_octree_build(context, &copy, &options, &lean->octree);
   if (status == CONIC_OK && !kept && lean->cache)
-    status = conic_octree_write(lean->octree, path);
-  if (!kept && lean->cache)
-    conic_lean_cache_trim(lean->cache, path);
+    status = conic_lean_cache_write(context, lean->cache, path, write_octree, lean->octree);
   lean->build_seconds += conic_seconds_now() - start;
   return status;
 }
@@ -117,9 +123,7 @@ static conic_status need_levels(const lean_choosing *c, double error_px) {
   if (status == CONIC_OK && !kept)
     status = conic_hybrid_build_lent(c->source->context, c->all->triangles, &options, most_error, &lean->levels);
   if (status == CONIC_OK && !kept && may_keep)
-    status = conic_hybrid_write(lean->levels, path);
-  if (!kept && may_keep)
-    conic_lean_cache_trim(lean->cache, path);
+    status = conic_lean_cache_write(c->source->context, lean->cache, path, write_levels, lean->levels);
   lean->build_seconds += conic_seconds_now() - start;
   return status;
 }
