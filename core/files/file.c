@@ -154,7 +154,8 @@ static conic_status open_kept(conic_output *output) {
 static conic_status open_temporary(conic_output *output) {
   if (output->is_kept)
     return open_kept(output);
-  conic_output_sweep(output->context, output->target);
+  if (conic_output_sweep(output->context, output->target) != CONIC_OK)
+    return CONIC_ERROR_MEMORY;
   for (int attempt = 0; attempt < 100; attempt++) {
     conic_memory_release(output->context, output->temporary_path);
     output->temporary_path = temporary_name(output->context, output->target, attempt);
@@ -304,7 +305,7 @@ static void remove_if_old(const char *path) {
     conic_disk_remove(path);
 }
 
-void conic_output_sweep(conic_context *context, const char *path) {
+conic_status conic_output_sweep(conic_context *context, const char *path) {
   const char *name = conic_file_name(path);
   const name_parts parts = split_name(name);
   conic_disk_folder folder;
@@ -312,7 +313,7 @@ void conic_output_sweep(conic_context *context, const char *path) {
   const size_t room = (size_t)n_folder + LONGEST_NAME + 2;
   char *found = conic_memory_allocate(context, room, 1);
   if (!found)
-    return;
+    return CONIC_ERROR_MEMORY;
   snprintf(found, room, "%.*s", n_folder ? n_folder : 1, n_folder ? path : ".");
   conic_disk_open_folder(found, &folder);
   for (const char *entry; (entry = conic_disk_next_name(&folder));)
@@ -321,6 +322,7 @@ void conic_output_sweep(conic_context *context, const char *path) {
       remove_if_old(found);
   conic_disk_close_folder(&folder);
   conic_memory_release(context, found);
+  return CONIC_OK;
 }
 
 int conic_file_is_there(const char *path) {

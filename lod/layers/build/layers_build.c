@@ -119,7 +119,7 @@ static conic_status open_builder(conic_context *context, const char *path, const
   if (status == CONIC_OK) {
     memcpy(made->path, path, n_path);
     if (!team || team->index == 0)
-      conic_output_sweep(context, path);
+      status = conic_output_sweep(context, path);
     conic_layers_raws_begin(context, made->path, eighths_of_memory(made, 3), made->options.cutoff,
                             made->options.keeps_all, team, &made->raws);
   }
