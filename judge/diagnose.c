@@ -175,11 +175,11 @@ static size_t cells_of(int samples) {
   return n > 8 ? n : 8;
 }
 
-static conic_status run_trials(conic_trials *trials, const conic_image *image, const conic_image *greatest,
-                               const uint8_t *classes, int n_fine, conic_diagnosis *found, int room, int *n_found) {
+static conic_status run_trials(conic_trials *trials, const conic_judged_picture *picture, int n_fine,
+                               conic_diagnosis *found, int room, int *n_found) {
   conic_diagnosis_samples samples;
-  conic_status status =
-      conic_diagnosis_samples_choose(trials->context, image, greatest, classes, cells_of(n_fine), &samples);
+  conic_status status = conic_diagnosis_samples_choose(trials->context, picture, cells_of(n_fine), &samples);
+  trials->picture = picture;
   trials->samples = &samples;
   if (status == CONIC_OK && samples.n)
     status = conic_trials_run(trials, found, room, n_found);
@@ -208,7 +208,8 @@ conic_status conic_gaussian_diagnose(conic_context *context, const conic_gaussia
   const conic_planted right = right_gaussians(gaussians, camera, &own, &how);
   conic_trials trials = {.context = context, .right = &right, .draw = draw_gaussian_world, .world = &world};
   trials.n_suspects = conic_suspects_of_gaussians(&right, trials.suspects);
-  return run_trials(&trials, image, how.greatest, classes, how.samples, found, room, n_found);
+  return run_trials(&trials, &(conic_judged_picture){image, how.greatest, classes, how.ranges}, how.samples, found,
+                    room, n_found);
 }
 
 conic_status conic_drawing_diagnose(conic_context *context, const conic_drawing *drawing, const conic_camera *camera,
@@ -232,7 +233,7 @@ conic_status conic_drawing_diagnose(conic_context *context, const conic_drawing 
   conic_trials trials = {.context = context, .right = &right, .draw = planted_drawing_draw, .world = &world};
   trials.n_suspects = conic_suspects_of_surfels(&right, trials.suspects);
   if (status == CONIC_OK)
-    status = run_trials(&trials, image, how.greatest, classes, 1, found, room, n_found);
+    status = run_trials(&trials, &(conic_judged_picture){image, how.greatest, classes, NULL}, 1, found, room, n_found);
   planted_drawing_end(&world);
   return status;
 }

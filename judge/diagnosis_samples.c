@@ -47,74 +47,103 @@ static size_t cell_of_sample(const conic_image *image, size_t pixel) {
   return pixel / width / CONIC_CELL * across + pixel % width / CONIC_CELL;
 }
 
-/* Chooses cells of wrong pixels, evenly spaced in the order of all wrong pixels. */
-static void choose_cells(const conic_image *image, const uint8_t *classes, size_t n_wrong, size_t most_cells,
-                         uint8_t *is_chosen, conic_diagnosis_samples *s) {
-  const size_t n = (size_t)image->width * (size_t)image->height;
-  const size_t across = ((size_t)image->width + CONIC_CELL - 1) / CONIC_CELL;
-  size_t i_wrong = 0, step = n_wrong / most_cells + 1;
-  for (size_t pixel = 0; pixel < n; pixel++) {
-    if (classes[pixel] != CONIC_PIXEL_WRONG || i_wrong++ % step != step / 2)
-      continue;
-    size_t cell = cell_of_sample(image, pixel);
-    if (!is_chosen[cell] && s->n_cells < most_cells) {
-      is_chosen[cell] = 1;
-      s->cells[s->n_cells++] =
-          (conic_sample_cell){.x = (int)(cell % across) * CONIC_CELL, .y = (int)(cell / across) * CONIC_CELL};
-    }
-  }
+static size_t cells_of_image(const conic_image *image) {
+  return cell_of_sample(image, (size_t)image->width * (size_t)image->height - 1) + 1;
 }
 
-static void take_cell(const conic_image *image, const conic_image *greatest, const uint8_t *classes,
-                      conic_sample_cell *cell, conic_diagnosis_samples *s) {
-  cell->first = s->n;
+/* Chooses cells of wrong pixels, evenly spaced in the order of all wrong pixels; then others, evenly spaced, where a
+ * mistake must change nothing. */
+static void choose_cells(const conic_judged_picture *picture, size_t n_wrong, size_t most_cells, uint8_t *is_chosen) {
+  const size_t n = (size_t)picture->image->width * (size_t)picture->image->height;
+  const size_t most_wrong = most_cells - most_cells / 4, n_cells = cells_of_image(picture->image);
+  size_t i_wrong = 0, n_chosen = 0, step = n_wrong / most_wrong + 1;
+  for (size_t pixel = 0; pixel < n; pixel++) {
+    if (picture->classes[pixel] != CONIC_PIXEL_WRONG || i_wrong++ % step != step / 2)
+      continue;
+    uint8_t *cell = &is_chosen[cell_of_sample(picture->image, pixel)];
+    if (*cell || n_chosen == most_wrong)
+      continue;
+    *cell = 1;
+    n_chosen++;
+  }
+  step = n_cells / (most_cells / 4 + 1) + 1;
+  for (size_t cell = step / 2; cell < n_cells; cell += step)
+    is_chosen[cell] = 1;
+}
+
+static void take_cell(const conic_judged_picture *picture, size_t i_cell, conic_diagnosis_samples *s) {
+  const conic_image *image = picture->image, *greatest = picture->greatest ? picture->greatest : image;
+  const size_t across = ((size_t)image->width + CONIC_CELL - 1) / CONIC_CELL;
+  conic_sample_cell *cell = &s->cells[s->n_cells];
+  *cell = (conic_sample_cell){
+      .first = s->n, .x = (int)(i_cell % across) * CONIC_CELL, .y = (int)(i_cell / across) * CONIC_CELL};
   for (int y = cell->y; y < cell->y + CONIC_CELL && y < image->height; y++)
     for (int x = cell->x; x < cell->x + CONIC_CELL && x < image->width; x++) {
       size_t pixel = (size_t)y * (size_t)image->width + (size_t)x;
-      if (classes[pixel] > CONIC_PIXEL_WRONG)
+      if (picture->classes[pixel] > CONIC_PIXEL_WRONG)
         continue;
       s->places[s->n][0] = (uint16_t)x;
       s->places[s->n][1] = (uint16_t)y;
-      s->is_wrong[s->n] = classes[pixel] == CONIC_PIXEL_WRONG;
+      s->is_wrong[s->n] = picture->classes[pixel] == CONIC_PIXEL_WRONG;
       conic_channels_of_image(image, pixel, s->low[s->n]);
-      conic_channels_of_image(greatest ? greatest : image, pixel, s->high[s->n++]);
+      conic_channels_of_image(greatest, pixel, s->high[s->n++]);
     }
   cell->n = s->n - cell->first;
+  s->n_cells += cell->n > 0;
 }
 
-conic_status conic_diagnosis_samples_choose(conic_context *context, const conic_image *image,
-                                            const conic_image *greatest, const uint8_t *classes, size_t most_cells,
-                                            conic_diagnosis_samples *s) {
-  const size_t n = (size_t)image->width * (size_t)image->height;
-  size_t n_wrong = 0;
+static conic_status allocate_samples(conic_context *context, const conic_image *image, size_t n_cells,
+                                     conic_diagnosis_samples *s) {
+  const size_t room = n_cells * CONIC_CELL * CONIC_CELL;
   memset(s, 0, sizeof *s);
   s->context = context;
   s->width = image->width;
   s->height = image->height;
+  s->channels = find_channels(image);
+  return conic_memory_allocate_these(context, CONIC_ROOM(s->cells, n_cells), CONIC_ROOM(s->places, room),
+                                     CONIC_ROOM(s->is_wrong, room), CONIC_ROOM(s->low, room),
+                                     CONIC_ROOM(s->high, room));
+}
+
+conic_status conic_diagnosis_samples_choose(conic_context *context, const conic_judged_picture *picture,
+                                            size_t most_cells, conic_diagnosis_samples *s) {
+  const size_t n = (size_t)picture->image->width * (size_t)picture->image->height;
+  const size_t n_cells = cells_of_image(picture->image);
+  size_t n_wrong = 0;
+  memset(s, 0, sizeof *s);
   for (size_t pixel = 0; pixel < n; pixel++)
-    n_wrong += classes[pixel] == CONIC_PIXEL_WRONG;
+    n_wrong += picture->classes[pixel] == CONIC_PIXEL_WRONG;
   if (!n_wrong)
     return CONIC_OK;
-  uint8_t *is_chosen = conic_memory_allocate_zeroed(context, cell_of_sample(image, n - 1) + 1, 1);
-  if (!is_chosen)
-    return CONIC_ERROR_MEMORY;
-  most_cells = most_cells < CONIC_MOST_CELLS ? most_cells : CONIC_MOST_CELLS;
-  choose_cells(image, classes, n_wrong, most_cells, is_chosen, s);
+  uint8_t *is_chosen = conic_memory_allocate_zeroed(context, n_cells, 1);
+  conic_status status =
+      is_chosen ? allocate_samples(context, picture->image, most_cells < n_cells ? 2 * most_cells : n_cells, s)
+                : CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK) {
+    choose_cells(picture, n_wrong, most_cells, is_chosen);
+    for (size_t cell = 0; cell < n_cells; cell++)
+      if (is_chosen[cell])
+        take_cell(picture, cell, s);
+  }
   conic_memory_release(context, is_chosen);
-  const size_t room = s->n_cells * CONIC_CELL * CONIC_CELL;
-  if (conic_memory_allocate_these(context, CONIC_ROOM(s->places, room), CONIC_ROOM(s->is_wrong, room),
-                                  CONIC_ROOM(s->low, room), CONIC_ROOM(s->high, room)) != CONIC_OK)
-    return CONIC_ERROR_MEMORY;
-  for (size_t i = 0; i < s->n_cells; i++)
-    take_cell(image, greatest, classes, &s->cells[i], s);
-  s->channels = find_channels(image);
-  return CONIC_OK;
+  return status;
+}
+
+conic_status conic_diagnosis_samples_take(conic_context *context, const conic_judged_picture *picture, size_t *next,
+                                          conic_diagnosis_samples *s) {
+  enum { MOST_TAKEN = 2048 };
+  const size_t n_cells = cells_of_image(picture->image);
+  const size_t room = n_cells - *next < MOST_TAKEN ? n_cells - *next : MOST_TAKEN;
+  conic_status status = allocate_samples(context, picture->image, room, s);
+  for (; status == CONIC_OK && *next < n_cells && s->n_cells < room; ++*next)
+    take_cell(picture, *next, s);
+  return status;
 }
 
 void conic_diagnosis_samples_release(conic_diagnosis_samples *s) {
   if (!s->context)
     return;
-  conic_memory_release_these(s->context, s->places, s->is_wrong, s->low, s->high);
+  conic_memory_release_these(s->context, s->cells, s->places, s->is_wrong, s->low, s->high);
   memset(s, 0, sizeof *s);
 }
 
@@ -132,7 +161,7 @@ static double channel_distance(int channel, float low, float high, float value) 
   return d < scale ? d / scale : d == 0.0 ? 0.0 : 1.0;
 }
 
-static double pixel_distance(const conic_diagnosis_samples *s, size_t i, const conic_channels values) {
+double conic_diagnosis_distance_at(const conic_diagnosis_samples *s, size_t i, const conic_channels values) {
   double sum = 0.0;
   for (int channel = 0; channel < CONIC_N_COMPARED_CHANNELS; channel++)
     if (s->channels >> channel & 1)
@@ -145,8 +174,8 @@ double conic_diagnosis_distance(const conic_diagnosis_samples *s, const conic_ch
   static const double far = 1e-2; /* this far off, a decision went the other way */
   double sum = 0.0;
   for (size_t i = 0; i < s->n; i++)
-    if (s->is_wrong[i] || !ours || pixel_distance(s, i, ours[i]) < far)
-      sum += pixel_distance(s, i, values[i]);
+    if (s->is_wrong[i] || !ours || conic_diagnosis_distance_at(s, i, ours[i]) < far)
+      sum += conic_diagnosis_distance_at(s, i, values[i]);
   return sum;
 }
 

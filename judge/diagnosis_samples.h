@@ -38,20 +38,32 @@ typedef struct conic_diagnosis_samples {
   uint8_t *is_wrong;
   conic_channels *low, *high; /* the range that the picture's values stand for */
   unsigned channels;          /* the picture's, as bits */
-  conic_sample_cell cells[CONIC_MOST_CELLS];
+  conic_sample_cell *cells;
 } conic_diagnosis_samples;
 
-/* Chooses at most `most_cells` cells with wrong pixels; none where no pixel is wrong. `greatest` may be null, as in
- * conic_gaussian_judging. The caller releases *samples, on failure too. Errors: MEMORY. */
-conic_status conic_diagnosis_samples_choose(conic_context *context, const conic_image *image,
-                                            const conic_image *greatest, const uint8_t *classes, size_t most_cells,
-                                            conic_diagnosis_samples *samples);
+/* A picture with the classes of its pixels. `greatest` and `ranges` may be null, as in conic_gaussian_judging. */
+typedef struct conic_judged_picture {
+  const conic_image *image, *greatest;
+  const uint8_t *classes;
+  const float *ranges;
+} conic_judged_picture;
+
+/* Chooses at most `most_cells` cells, a quarter of them without wrong pixels; none where no pixel is wrong. The caller
+ * releases *samples, on failure too. Errors: MEMORY. */
+conic_status conic_diagnosis_samples_choose(conic_context *context, const conic_judged_picture *picture,
+                                            size_t most_cells, conic_diagnosis_samples *samples);
+/* Takes the cells from *next on, in rows, and sets *next to the first that is left; none where none is. The caller
+ * releases *samples, on failure too. Errors: MEMORY. */
+conic_status conic_diagnosis_samples_take(conic_context *context, const conic_judged_picture *picture, size_t *next,
+                                          conic_diagnosis_samples *samples);
 void conic_diagnosis_samples_release(conic_diagnosis_samples *samples);
 
 /* The channels of an image at a pixel; missing ones are 0. */
 void conic_channels_of_image(const conic_image *image, size_t pixel, conic_channels channels);
 
-/* The sum of the differences, each at most 1. Right pixels that are far from `ours` (null: none is) are left out. */
+/* The sum of a sample's differences, each at most 1. */
+double conic_diagnosis_distance_at(const conic_diagnosis_samples *samples, size_t i, const conic_channels values);
+/* The sum over all samples. Right pixels that are far from `ours` (null: none is) are left out. */
 double conic_diagnosis_distance(const conic_diagnosis_samples *samples, const conic_channels *values,
                                 const conic_channels *ours);
 
@@ -77,6 +89,7 @@ typedef conic_status conic_planted_drawer(void *world, const conic_planted *plan
 
 typedef struct conic_trials {
   conic_context *context;
+  const conic_judged_picture *picture;
   const conic_diagnosis_samples *samples;
   const conic_planted *right;
   conic_planted_drawer *draw;
@@ -84,6 +97,22 @@ typedef struct conic_trials {
   int n_suspects;
   conic_suspect suspects[CONIC_MOST_SUSPECTS];
 } conic_trials;
+
+/* How a picture with a mistake fits all of the judged one. */
+typedef struct conic_counter_check {
+  conic_planted planted;
+  int is_rough;                  /* the mistake is only drawn roughly, so that half of the difference suffices */
+  double share;                  /* of the difference that it takes away */
+  size_t wrong, righted, spoilt; /* pixels; spoilt: right ones that it would make wrong. Those of whose difference
+                                    roundings may do more than half count only if righted */
+  size_t right;
+} conic_counter_check;
+
+/* Draws all that was judged with each mistake, and compares it. Errors: as the drawer's, MEMORY. */
+conic_status conic_counter_check_all(conic_trials *trials, size_t n, conic_counter_check *checks);
+/* Whether the mistake explains the picture: nine tenths of the difference and eight of the wrong pixels, and it spoils
+ * no right ones, but for as few as decisions may turn. */
+int conic_counter_check_is_passed(const conic_counter_check *check);
 
 /* Finds explanations as conic_gaussian_diagnose says. */
 conic_status conic_trials_run(conic_trials *trials, conic_diagnosis *found, int room, int *n_found);

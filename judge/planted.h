@@ -108,5 +108,7 @@ int conic_suspect_rank(const conic_suspect *suspect);
 /* Whether the mistake is in finishing the picture, so that nothing is drawn anew. */
 int conic_suspect_is_finish(const conic_suspect *suspect);
 int conic_suspect_is_profile(const conic_suspect *suspect);
+/* Whether it is drawn only roughly as renderers with that mistake do. */
+int conic_suspect_is_rough(const conic_suspect *suspect);
 /* Whether any value is possible: the listed ones are only some. */
 int conic_suspect_is_any(const conic_suspect *suspect);

@@ -290,6 +290,10 @@ int conic_suspect_is_finish(const conic_suspect *suspect) {
   return suspect->kind >= OF_ALPHA;
 }
 
+int conic_suspect_is_rough(const conic_suspect *suspect) {
+  return suspect->kind == OF_SLIP && suspect->how == CONIC_SLIP_EPSILON; /* each ray has its own length */
+}
+
 int conic_suspect_is_any(const conic_suspect *suspect) {
   return suspect->kind == OF_NEAR;
 }

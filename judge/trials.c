@@ -9,7 +9,7 @@ static const double least_left = 2e-5, little_left = 0.02;
 /* A second mistake must explain this part of what the first leaves. */
 static const double second_share = 0.6;
 
-enum { MOST_FIRST = 8, MOST_REMEMBERED = 64, NARROWINGS = 4, NARROWER = 9, MOST_TURNS = 4 };
+enum { MOST_FIRST = 8, MOST_REMEMBERED = 64, NARROWINGS = 4, NARROWER = 9, MOST_TURNS = 4, MOST_CLAIMS = 6 };
 
 typedef struct trial {
   int first, second; /* suspects; second below 0: none */
@@ -41,25 +41,27 @@ static conic_status tell_trial(trial_run *r) {
   return conic_progress(r->t->context, "diagnose", r->from + (r->to - r->from) * (done < 1.0 ? done : 1.0));
 }
 
-/* Draws only if a mistake is not one of finishing the picture. */
-static conic_status try_planted(trial_run *r, trial *tried) {
-  const conic_suspect *a = tried->first >= 0 ? &r->t->suspects[tried->first] : NULL;
-  const conic_suspect *b = tried->second >= 0 ? &r->t->suspects[tried->second] : NULL;
-  conic_planted planted = *r->t->right;
-  int drawn = -1;
+/* Plants one mistake or two. Returns which of the drawn pictures it needs: that of a suspect, of none (-1), or a new
+ * one (-3), since mistakes in finishing need none. */
+static int plant_trial(const conic_trials *t, const trial *tried, conic_planted *planted) {
+  const conic_suspect *a = tried->first >= 0 ? &t->suspects[tried->first] : NULL;
+  const conic_suspect *b = tried->second >= 0 ? &t->suspects[tried->second] : NULL;
+  *planted = *t->right;
   if (a && b && conic_suspect_rank(b) < conic_suspect_rank(a)) {
     const conic_suspect *other = a;
     a = b;
     b = other;
   }
   if (a)
-    conic_suspect_plant(a, &planted);
+    conic_suspect_plant(a, planted);
   if (b)
-    conic_suspect_plant(b, &planted);
-  if (a && !conic_suspect_is_finish(a))
-    drawn = (int)(a - r->t->suspects);
-  if (b && !conic_suspect_is_finish(b))
-    drawn = -3; /* both */
+    conic_suspect_plant(b, planted);
+  return b && !conic_suspect_is_finish(b) ? -3 : a && !conic_suspect_is_finish(a) ? (int)(a - t->suspects) : -1;
+}
+
+static conic_status try_planted(trial_run *r, trial *tried) {
+  conic_planted planted;
+  const int drawn = plant_trial(r->t, tried, &planted);
   conic_status status = tell_trial(r);
   if (status == CONIC_OK)
     status = draw_planted(r, &planted, drawn);
@@ -247,13 +249,6 @@ static void settle_ties(const conic_trials *t, trial_list *list) {
     }
 }
 
-static void add_diagnosis(const conic_trials *t, int first, int second, double left, conic_diagnosis *found, int room,
-                          int *n_found) {
-  if (*n_found < room)
-    found[(*n_found)++] = (conic_diagnosis){
-        .name = t->suspects[first].name, .with = second >= 0 ? t->suspects[second].name : NULL, .share = 1.0 - left};
-}
-
 /* What a mistake of that name leaves alone. */
 static double alone_of(const conic_trials *t, const trial_list *best, int suspect) {
   for (int i = 0; i < best->n; i++)
@@ -262,19 +257,55 @@ static double alone_of(const conic_trials *t, const trial_list *best, int suspec
   return INFINITY;
 }
 
-static void tell_explanations(const conic_trials *t, const trial_list *list, const trial *pair, conic_diagnosis *found,
-                              int room, int *n_found) {
+static void add_diagnosis(const conic_trials *t, const trial *tried, const conic_counter_check *check,
+                          conic_diagnosis *found, int room, int *n_found) {
+  const int suspects[2] = {tried->first, tried->second};
+  for (int k = 0; k < 2 && suspects[k] >= 0 && *n_found < room; k++)
+    found[(*n_found)++] = (conic_diagnosis){.name = t->suspects[suspects[k]].name,
+                                            .with = suspects[1 - k] >= 0 ? t->suspects[suspects[1 - k]].name : NULL,
+                                            .share = check->share,
+                                            .righted = (uint32_t)check->righted,
+                                            .spoilt = (uint32_t)check->spoilt,
+                                            .is_nearest = !conic_counter_check_is_passed(check)};
+}
+
+/* What may be told, the best first: two mistakes, then each alone. Returns how many. */
+static int choose_claims(const conic_trials *t, const trial_list *list, const trial *pair, trial claims[MOST_CLAIMS]) {
   const trial *best = list->trials;
+  int n = 0;
   if (pair->first >= 0 && pair->left < 1.0 - least_share && pair->left < (1.0 - second_share) * best[0].left) {
     const int is_turned = alone_of(t, list, pair->second) < alone_of(t, list, pair->first);
-    const int first = is_turned ? pair->second : pair->first, second = is_turned ? pair->first : pair->second;
-    add_diagnosis(t, first, second, pair->left, found, room, n_found);
-    add_diagnosis(t, second, first, pair->left, found, room, n_found);
-    return;
+    claims[n++] = is_turned ? (trial){pair->second, pair->first, pair->left} : *pair;
   }
-  for (int i = 0; i < list->n && best[i].left <= 1.0 - least_share && best[i].left <= 2.0 * best[0].left + little_left;
-       i++)
-    add_diagnosis(t, best[i].first, -1, best[i].left, found, room, n_found);
+  for (int i = 0; i < list->n && n < MOST_CLAIMS && best[i].left <= 1.0 - least_share; i++)
+    claims[n++] = best[i];
+  return n;
+}
+
+/* Tells what passes the counter-check, or else what comes nearest. */
+static conic_status tell_explanations(conic_trials *t, const trial_list *list, const trial *pair,
+                                      conic_diagnosis *found, int room, int *n_found) {
+  trial claims[MOST_CLAIMS];
+  conic_counter_check checks[MOST_CLAIMS];
+  const int n = choose_claims(t, list, pair, claims);
+  int best = -1, nearest = -1;
+  for (int i = 0; i < n; i++) {
+    plant_trial(t, &claims[i], &checks[i].planted);
+    checks[i].is_rough = claims[i].second < 0 && conic_suspect_is_rough(&t->suspects[claims[i].first]);
+  }
+  conic_status status = conic_counter_check_all(t, (size_t)n, checks);
+  for (int i = 0; i < n && status == CONIC_OK; i++) {
+    const int is_passed = conic_counter_check_is_passed(&checks[i]);
+    if (is_passed &&
+        (best < 0 || (claims[best].second < 0 && claims[i].left <= 2.0 * claims[best].left + little_left))) {
+      add_diagnosis(t, &claims[i], &checks[i], found, room, n_found);
+      best = best < 0 ? i : best;
+    }
+    nearest = nearest < 0 || checks[i].share > checks[nearest].share ? i : nearest;
+  }
+  if (best < 0 && nearest >= 0 && checks[nearest].share >= least_share)
+    add_diagnosis(t, &claims[nearest], &checks[nearest], found, room, n_found);
+  return status;
 }
 
 static conic_status explain_picture(trial_run *r, conic_diagnosis *found, int room, int *n_found) {
@@ -299,7 +330,7 @@ static conic_status explain_picture(trial_run *r, conic_diagnosis *found, int ro
   if (best.trials[0].left > least_left)
     status = try_all_pairs(r, &first, &pair);
   if (status == CONIC_OK)
-    tell_explanations(r->t, &best, &pair, found, room, n_found);
+    status = tell_explanations(r->t, &best, &pair, found, room, n_found);
   return status;
 }
 

@@ -70,7 +70,8 @@ static conic_status make_ready(cli_session *session, cli_judge_job *job) {
     return status;
   job->found.n_whole = (size_t)job->camera.width * (size_t)job->camera.height;
   job->classes = malloc(job->found.n_whole);
-  if (!job->classes) {
+  job->ranges = calloc(job->found.n_whole, sizeof *job->ranges);
+  if (!job->classes || !job->ranges) {
     cli_error(CLI_RESOURCE, "judge: out of memory");
     return CONIC_ERROR_MEMORY;
   }
@@ -130,6 +131,7 @@ static int judge_scene(cli_session *session, cli_judge_job *job) {
     status = show_maps(session, job);
   exit_code = status == CONIC_OK ? tell_judged(session, job) : cli_exit_of(status);
   free(job->classes);
+  free(job->ranges);
   conic_image_release(session->context, &job->ours);
   conic_picture_release(session->context, &job->picture);
   cli_scene_release(session, &job->scene);

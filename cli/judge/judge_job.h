@@ -64,6 +64,7 @@ typedef struct cli_judge_job {
   conic_picture picture;
   conic_camera camera;
   uint8_t *classes; /* of each pixel; CONIC_N_PIXEL_CLASSES if it was not judged */
+  float *ranges;    /* of each judged pixel of a Gaussian scene, as in conic_gaussian_judging */
   cli_judgement found;
   conic_image ours; /* conic's own picture, if it is shown */
   double seconds[CLI_JUDGE_N_STAGES];

@@ -204,9 +204,12 @@ static void put_diagnosis(const cli_page *page, const cli_judge_job *job) {
   if (cli_judge_is_right(job))
     return;
   fputs("<h2>Diagnosis</h2>\n", page->to);
-  if (!job->found.n_faults)
+  const int is_named = job->found.n_faults > 0 && !job->found.faults[0].is_nearest;
+  if (!is_named)
     fputs("<p>No fault that is known explains the difference.</p>\n", page->to);
-  else
+  if (job->found.n_faults && !is_named)
+    fputs("<p>What comes nearest, without explaining it:</p>\n<table>\n", page->to);
+  else if (is_named)
     fputs("<p>What takes away most of the difference, if the renderer is taken to do it:</p>\n<table>\n", page->to);
   for (int k = 0; k < job->found.n_faults; k++) {
     const conic_diagnosis *d = &job->found.faults[k];

@@ -28,6 +28,7 @@ conic_status cli_judge_gaussians(cli_session *session, cli_judge_job *job) {
   judging.samples = job->scene.shot.view.samples;
   judging.is_opaque = job->scene.shot.render.has_background;
   judging.greatest = greatest_in(job);
+  judging.ranges = job->ranges;
   conic_status status = conic_gaussian_judge(session->context, conic_source_gaussians(job->scene.source), &job->camera,
                                              &options, &judging, &job->picture.image, job->classes, &verdict);
   if (status != CONIC_OK)
@@ -83,6 +84,7 @@ static conic_status diagnose_gaussians(cli_session *session, cli_judge_job *job)
   judging.samples = job->scene.shot.view.samples;
   judging.is_opaque = job->scene.shot.render.has_background;
   judging.greatest = greatest_in(job);
+  judging.ranges = job->ranges;
   return conic_gaussian_diagnose(session->context, conic_source_gaussians(job->scene.source), &job->camera, &options,
                                  &judging, &job->picture.image, job->classes, job->found.faults, CLI_JUDGE_MOST_FAULTS,
                                  &job->found.n_faults);

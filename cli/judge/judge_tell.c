@@ -79,9 +79,20 @@ static void print_explained(const cli_judgement *found) {
 
 static void print_diagnosis(int k, const conic_diagnosis *d) {
   const char *meaning = conic_diagnosis_meaning(d->name);
-  printf("%s %s%s%s %s away %.4g %% of the difference: %s\n", k ? "         " : "diagnosis", d->name,
-         d->with ? " with " : "", d->with ? d->with : "", d->with ? "take" : "takes", 100.0 * d->share,
-         meaning ? meaning : "");
+  printf("%s %s%s%s %s away %.4g %% of the difference",
+         k               ? "         "
+         : d->is_nearest ? "nearest  "
+                         : "diagnosis",
+         d->name, d->with ? " with " : "", d->with ? d->with : "", d->with ? "take" : "takes", 100.0 * d->share);
+  if (d->is_nearest)
+    printf(", but makes only %lu wrong pixels right, and %lu right ones wrong", (unsigned long)d->righted,
+           (unsigned long)d->spoilt);
+  printf(": %s\n", meaning ? meaning : "");
+}
+
+/* Whether a mistake has been named. */
+static int is_diagnosed(const cli_judgement *found) {
+  return found->n_faults > 0 && !found->faults[0].is_nearest;
 }
 
 void cli_judge_print(const cli_judge_job *job) {
@@ -106,12 +117,12 @@ void cli_judge_print(const cli_judge_job *job) {
       printf("%-9s max %.4g\n", conic_plane_describe((conic_plane)i)->name, found->planes[i].max_abs);
   if (job->picture.is_alpha_dropped)
     puts("alpha is full everywhere, and is not judged");
-  for (int k = 0; k < found->n_faults; k++)
-    print_diagnosis(k, &found->faults[k]);
   if (found->is_blank)
     puts("diagnosis the picture is blank: does its camera look at the scene, along z?");
-  else if (!found->n_faults && !cli_judge_is_right(job) && !job->skips_diagnosis)
+  else if (!is_diagnosed(found) && !cli_judge_is_right(job) && !job->skips_diagnosis)
     puts("diagnosis no known mistake explains the wrong pixels");
+  for (int k = 0; k < found->n_faults; k++)
+    print_diagnosis(k, &found->faults[k]);
   print_worst(job);
   for (int k = 0; k < CLI_JUDGE_N_STAGES && job->shows_times; k++)
     printf("%-9s %.2f s\n", stage_names[k], job->seconds[k]);
@@ -162,14 +173,18 @@ static void write_worst(cli_json *json, const cli_judgement *found) {
   cli_json_close(json);
 }
 
-static void write_diagnosis(cli_json *json, const cli_judgement *found) {
-  cli_json_array(json, "diagnosis");
+static void write_faults(cli_json *json, const char *key, const cli_judgement *found, uint32_t is_nearest) {
+  cli_json_array(json, key);
   for (int k = 0; k < found->n_faults; k++) {
+    const conic_diagnosis *d = &found->faults[k];
+    if (d->is_nearest != is_nearest)
+      continue;
     cli_json_object(json, NULL);
-    cli_json_text(json, "name", found->faults[k].name);
-    if (found->faults[k].with)
-      cli_json_text(json, "with", found->faults[k].with);
-    cli_json_number(json, "share", found->faults[k].share);
+    cli_json_text(json, "name", d->name);
+    if (d->with)
+      cli_json_text(json, "with", d->with);
+    cli_json_number(json, "share", d->share);
+    cli_json_counts(json, NULL, {"righted_pixels", d->righted}, {"spoilt_pixels", d->spoilt});
     cli_json_close(json);
   }
   cli_json_close(json);
@@ -200,7 +215,8 @@ void cli_judge_members(cli_json *json, const void *cookie) {
   cli_json_count(json, "samples", (uint64_t)job->scene.shot.view.samples);
   write_picture(json, job);
   write_worst(json, found);
-  write_diagnosis(json, found);
+  write_faults(json, "diagnosis", found, 0);
+  write_faults(json, "nearest", found, 1);
   cli_json_object(json, "seconds");
   for (int k = 0; k < CLI_JUDGE_N_STAGES; k++) {
     cli_json_number(json, stage_names[k], job->seconds[k]);

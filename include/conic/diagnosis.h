@@ -8,10 +8,13 @@
 CONIC_BEGIN_C
 
 typedef struct conic_diagnosis {
-  const char *name; /* of a mistake, "half-pixel" …, or of a profile; static */
-  const char *with; /* the second name, where only two together explain the picture; else null */
-  double share;     /* the part of the difference that it explains: 1 where nothing is left */
-  uint64_t reserved[2];
+  const char *name;    /* of a mistake, "half-pixel" …, or of a profile; static */
+  const char *with;    /* the second name, where only two together explain the picture; else null */
+  double share;        /* the part of all judged pixels' difference that it explains: 1 where nothing is left */
+  uint32_t righted;    /* wrong pixels that would be right by it … */
+  uint32_t spoilt;     /* … and right ones that would be wrong */
+  uint32_t is_nearest; /* it does not explain the picture, but nothing that was tried comes nearer */
+  uint32_t reserved;
 } conic_diagnosis;
 
 #define CONIC_MOST_DIAGNOSES 16

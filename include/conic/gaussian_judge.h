@@ -86,6 +86,8 @@ typedef struct conic_gaussian_judging {
   int is_opaque;                  /* the picture has a background, so A = 1 */
   const conic_image *greatest;    /* null; or the image holds the least values that its codes stand for, and this holds
                                      the greatest, plane by plane (conic/picture.h) */
+  float *ranges;                  /* null; or takes, of the picture's size, how wide the range of each judged pixel is:
+                                     the sum over its channels, of depths relative. For conic_gaussian_diagnose */
 } conic_gaussian_judging;
 
 /* All pixels, conic's own floats, one sample. */

@@ -153,6 +153,13 @@ static void judge_planes_at(const judge_job *j, const conic_gaussian_bound *b, s
     judge_name(CONIC_PLANE_LAST, b->last, b->n_last, ((const uint32_t *)image->planes[CONIC_PLANE_LAST])[pixel], p);
 }
 
+static float range_of_pixel(const judge_pixel *p) {
+  double sum = 0.0;
+  for (int plane = 0; plane < CONIC_N_PLANES; plane++)
+    sum += p->width[plane] * conic_plane_describe((conic_plane)plane)->n_channels;
+  return (float)sum;
+}
+
 static void judge_bound(void *data, size_t i, size_t pixel, const conic_gaussian_bound *b, int i_thread) {
   const judge_job *j = data;
   conic_gaussian_verdict *v = &j->verdicts[i_thread];
@@ -175,6 +182,8 @@ static void judge_bound(void *data, size_t i, size_t pixel, const conic_gaussian
   }
   if (j->classes)
     j->classes[pixel] = (uint8_t)p.class;
+  if (j->judging->ranges)
+    j->judging->ranges[pixel] = range_of_pixel(&p);
   if (p.class != CONIC_PIXEL_WRONG)
     return;
   p.fault.x = (int)(pixel % (size_t)j->image->width);

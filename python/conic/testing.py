@@ -32,6 +32,8 @@ def describe(verdict: Dict[str, Any]) -> str:
     lines = [f"the picture is {verdict['verdict']}: " + ", ".join(f"{n} {name}" for name, n in pixels.items())]
     for fault in verdict.get("diagnosis", [])[:3]:
         lines.append(f"  {fault['share']:6.1%} explained by {fault['name']}")
+    for fault in verdict.get("nearest", [])[:1]:
+        lines.append(f"  not explained; nearest is {fault['name']}, by {fault['share']:.1%}")
     for worst in verdict.get("worst", [])[:3]:
         place = f"pixel {worst['x']},{worst['y']}" if "x" in worst else f"pixel {worst.get('pixel')}"
         found, low, high = (worst.get(key) for key in ("found", "low", "high"))
