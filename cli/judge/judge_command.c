@@ -71,7 +71,8 @@ static conic_status make_ready(cli_session *session, cli_judge_job *job) {
   job->found.n_whole = (size_t)job->camera.width * (size_t)job->camera.height;
   job->classes = malloc(job->found.n_whole);
   job->ranges = calloc(job->found.n_whole, sizeof *job->ranges);
-  if (!job->classes || !job->ranges) {
+  job->wrong_values = calloc(job->found.n_whole, sizeof *job->wrong_values);
+  if (!job->classes || !job->ranges || !job->wrong_values) {
     cli_error(CLI_RESOURCE, "judge: out of memory");
     return CONIC_ERROR_MEMORY;
   }
@@ -87,6 +88,10 @@ static conic_status find_out(cli_session *session, cli_judge_job *job) {
   if (status == CONIC_OK && job->found.n_worst)
     status = cli_judge_explain(session, job);
   at = pass_stage(job, CLI_JUDGE_EXPLAIN, at);
+  if (status == CONIC_OK)
+    conic_faults_locate(&job->picture.image, job->picture.greatest.width ? &job->picture.greatest : NULL, job->classes,
+                        cli_is_composited(&job->scene) ? job->wrong_values : NULL, job->found.places,
+                        &job->found.n_places);
   if (status == CONIC_OK && !cli_judge_is_right(job) && !job->skips_diagnosis)
     status = cli_judge_diagnose(session, job);
   pass_stage(job, CLI_JUDGE_DIAGNOSE, at);
@@ -132,6 +137,7 @@ static int judge_scene(cli_session *session, cli_judge_job *job) {
   exit_code = status == CONIC_OK ? tell_judged(session, job) : cli_exit_of(status);
   free(job->classes);
   free(job->ranges);
+  free(job->wrong_values);
   conic_image_release(session->context, &job->ours);
   conic_picture_release(session->context, &job->picture);
   cli_scene_release(session, &job->scene);

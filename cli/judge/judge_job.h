@@ -45,6 +45,8 @@ typedef struct cli_judgement {
   int n_worst;
   conic_diagnosis faults[CLI_JUDGE_MOST_FAULTS]; /* that would explain the wrong pixels, the best first */
   int n_faults;
+  conic_fault_place places[CONIC_MOST_FAULT_PLACES];
+  int n_places;
   int is_blank; /* the picture has one colour everywhere, which has many causes and is not diagnosed */
 } cli_judgement;
 
@@ -64,7 +66,8 @@ typedef struct cli_judge_job {
   conic_picture picture;
   conic_camera camera;
   uint8_t *classes; /* of each pixel; CONIC_N_PIXEL_CLASSES if it was not judged */
-  float *ranges;    /* of each judged pixel of a Gaussian scene, as in conic_gaussian_judging */
+  float *ranges;    /* of each judged pixel of a Gaussian scene, as in conic_gaussian_judging; so are these */
+  uint32_t *wrong_values;
   cli_judgement found;
   conic_image ours; /* conic's own picture, if it is shown */
   double seconds[CLI_JUDGE_N_STAGES];
@@ -96,4 +99,5 @@ void cli_judge_members(cli_json *json, const void *job);
 
 /* What a fault's value is and may be, and what a contribution is, in one line each. */
 void cli_judge_describe(const cli_judge_job *job, const conic_oracle_fault *fault, char *text, size_t room);
+void cli_judge_describe_place(const conic_fault_place *place, char *text, size_t room);
 void cli_judge_describe_part(const cli_judge_part *part, char *text, size_t room);

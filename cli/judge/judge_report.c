@@ -204,6 +204,11 @@ static void put_diagnosis(const cli_page *page, const cli_judge_job *job) {
   if (cli_judge_is_right(job))
     return;
   fputs("<h2>Diagnosis</h2>\n", page->to);
+  for (int k = 0; k < job->found.n_places; k++) {
+    char text[192];
+    cli_judge_describe_place(&job->found.places[k], text, sizeof text);
+    fprintf(page->to, "<p>Where: %s.</p>\n", text);
+  }
   const int is_named = job->found.n_faults > 0 && !job->found.faults[0].is_nearest;
   if (!is_named)
     fputs("<p>No fault that is known explains the difference.</p>\n", page->to);

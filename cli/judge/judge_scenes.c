@@ -29,6 +29,7 @@ conic_status cli_judge_gaussians(cli_session *session, cli_judge_job *job) {
   judging.is_opaque = job->scene.shot.render.has_background;
   judging.greatest = greatest_in(job);
   judging.ranges = job->ranges;
+  judging.faults = job->wrong_values;
   conic_status status = conic_gaussian_judge(session->context, conic_source_gaussians(job->scene.source), &job->camera,
                                              &options, &judging, &job->picture.image, job->classes, &verdict);
   if (status != CONIC_OK)

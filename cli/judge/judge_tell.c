@@ -90,6 +90,28 @@ static void print_diagnosis(int k, const conic_diagnosis *d) {
   printf(": %s\n", meaning ? meaning : "");
 }
 
+void cli_judge_describe_place(const conic_fault_place *p, char *text, size_t room) {
+  const char *state = p->is_constant ? "has one colour" : "is wrong";
+  const int is_column = strcmp(p->kind, "column") == 0;
+  if (strcmp(p->kind, "nan") == 0)
+    snprintf(text, room, "%zu pixels are NaN or infinite, the first at %d,%d", p->pixels, p->at[0], p->at[1]);
+  else if (strcmp(p->kind, "plane") == 0 || strcmp(p->kind, "channel") == 0)
+    snprintf(text, room, "only the %s %s is wrong, in %zu pixels; all else is right", p->kind, p->what, p->pixels);
+  else if (strcmp(p->kind, "tile") == 0)
+    snprintf(text, room, "the %d x %d tile at %d, %d %s; all else is right", p->size, p->size, p->at[0], p->at[1],
+             state);
+  else if (strcmp(p->kind, "row") == 0 || strcmp(p->kind, "column") == 0)
+    snprintf(text, room, "%s %d, of %d pixels each, %s; all else is right", p->kind, p->at[!is_column], p->size, state);
+  else if (strcmp(p->kind, "every") == 0)
+    snprintf(text, room, "every %s of %d from %d on %s; all else is right", p->what, p->size, p->at[0] + p->at[1],
+             state);
+  else if (strcmp(p->kind, "checkerboard") == 0)
+    snprintf(text, room, "every other pixel, as on a checkerboard, %s; all else is right", state);
+  else
+    snprintf(text, room, "the %s%s, %d pixels wide, %s; all else is right", p->what,
+             strcmp(p->kind, "half") == 0 ? " part" : " border", p->size, state);
+}
+
 /* Whether a mistake has been named. */
 static int is_diagnosed(const cli_judgement *found) {
   return found->n_faults > 0 && !found->faults[0].is_nearest;
@@ -117,6 +139,11 @@ void cli_judge_print(const cli_judge_job *job) {
       printf("%-9s max %.4g\n", conic_plane_describe((conic_plane)i)->name, found->planes[i].max_abs);
   if (job->picture.is_alpha_dropped)
     puts("alpha is full everywhere, and is not judged");
+  for (int k = 0; k < found->n_places; k++) {
+    char text[192];
+    cli_judge_describe_place(&found->places[k], text, sizeof text);
+    printf("where     %s\n", text);
+  }
   if (found->is_blank)
     puts("diagnosis the picture is blank: does its camera look at the scene, along z?");
   else if (!is_diagnosed(found) && !cli_judge_is_right(job) && !job->skips_diagnosis)
@@ -190,6 +217,25 @@ static void write_faults(cli_json *json, const char *key, const cli_judgement *f
   cli_json_close(json);
 }
 
+static void write_places(cli_json *json, const cli_judgement *found) {
+  cli_json_array(json, "where");
+  for (int k = 0; k < found->n_places; k++) {
+    const conic_fault_place *p = &found->places[k];
+    const double at[2] = {p->at[0], p->at[1]};
+    char text[192];
+    cli_judge_describe_place(p, text, sizeof text);
+    cli_json_object(json, NULL);
+    cli_json_text(json, "kind", p->kind);
+    if (p->what)
+      cli_json_text(json, "what", p->what);
+    cli_json_numbers(json, "at", at, 2);
+    cli_json_counts(json, NULL, {"size", (uint64_t)p->size}, {"pixels", p->pixels});
+    cli_json_text(json, "text", text);
+    cli_json_close(json);
+  }
+  cli_json_close(json);
+}
+
 void cli_judge_members(cli_json *json, const void *cookie) {
   const cli_judge_job *job = cookie;
   const cli_judgement *found = &job->found;
@@ -215,6 +261,7 @@ void cli_judge_members(cli_json *json, const void *cookie) {
   cli_json_count(json, "samples", (uint64_t)job->scene.shot.view.samples);
   write_picture(json, job);
   write_worst(json, found);
+  write_places(json, found);
   write_faults(json, "diagnosis", found, 0);
   write_faults(json, "nearest", found, 1);
   cli_json_object(json, "seconds");

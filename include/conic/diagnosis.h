@@ -37,6 +37,27 @@ CONIC_API conic_status conic_drawing_diagnose(conic_context *context, const coni
                                               const conic_image *image, const uint8_t *classes, conic_diagnosis *found,
                                               int room, int *n_found);
 
+/* Where a picture is wrong, if that is a place, or some of its values, and all else is right. */
+typedef struct conic_fault_place {
+  const char *kind; /* "nan", "plane", "channel", "tile", "row", "column", "border", "half", "every" or "checkerboard";
+                       static; null: nothing of that kind */
+  const char *what; /* of a plane or channel, its name; of a border or half, "left", "right", "top" or "bottom"; of
+                       every n-th, "row" or "column"; else null */
+  int at[2];        /* of NaN and infinity, the first pixel; of a tile, its column and row; of rows, columns, halves and
+                       every n-th, the first of them */
+  int size;         /* the tile's edge or the band's width, in pixels; or the n of every n-th */
+  int is_constant;  /* the picture has one value all over the place */
+  size_t pixels;    /* wrong ones there */
+  uint64_t reserved[2];
+} conic_fault_place;
+
+#define CONIC_MOST_FAULT_PLACES 4
+
+/* Finds such places; *n says how many. `greatest` and `faults` are as in conic_gaussian_judging, and may be null.
+ * Cannot fail. */
+CONIC_API void conic_faults_locate(const conic_image *image, const conic_image *greatest, const uint8_t *classes,
+                                   const uint32_t *faults, conic_fault_place places[CONIC_MOST_FAULT_PLACES], int *n);
+
 /* What a name stands for, in a sentence: "Pixel centres are half a pixel off." Static; null for an unknown name. */
 CONIC_API const char *conic_diagnosis_meaning(const char *name);
 

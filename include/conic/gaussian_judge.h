@@ -88,6 +88,9 @@ typedef struct conic_gaussian_judging {
                                      the greatest, plane by plane (conic/picture.h) */
   float *ranges;                  /* null; or takes, of the picture's size, how wide the range of each judged pixel is:
                                      the sum over its channels, of depths relative. For conic_gaussian_diagnose */
+  uint32_t *faults;               /* null; or takes which planes of each judged pixel are wrong, as bits 1 << plane, and
+                                     of rgba which channels, as bits 1 << (CONIC_MAX_PLANES + channel). For
+                                     conic_faults_locate */
 } conic_gaussian_judging;
 
 /* All pixels, conic's own floats, one sample. */

@@ -21,6 +21,7 @@ typedef struct judge_pixel {
   conic_gaussian_class class;
   double severity[CONIC_N_PLANES], width[CONIC_N_PLANES], worst; /* worst: outside of what it may be */
   conic_oracle_fault fault;
+  uint32_t faults; /* as in conic_gaussian_judging */
 } judge_pixel;
 
 static judged_range range_at(const conic_gaussian_bound *b, int channel) {
@@ -109,6 +110,7 @@ static void judge_value(const judge_job *j, const conic_gaussian_bound *b, conic
     return;
   }
   note_class(p, CONIC_PIXEL_WRONG);
+  p->faults |= 1u << plane | (plane == CONIC_PLANE_RGBA ? 1u << (CONIC_MAX_PLANES + channel) : 0u);
   if (outside > p->worst) {
     p->worst = outside;
     p->fault = (conic_oracle_fault){.plane = (int)plane,
@@ -128,6 +130,7 @@ static void judge_name(conic_plane plane, const uint32_t *ids, int n, uint32_t f
     p->fault = (conic_oracle_fault){.plane = (int)plane, .found = found, .low = ids[0], .high = ids[0]};
   }
   p->severity[plane] = is_in ? p->severity[plane] : 1.0;
+  p->faults |= (uint32_t)!is_in << plane;
   note_class(p, !is_in ? CONIC_PIXEL_WRONG : n == 1 ? CONIC_PIXEL_EQUAL : CONIC_PIXEL_ROUNDED);
 }
 
@@ -184,6 +187,8 @@ static void judge_bound(void *data, size_t i, size_t pixel, const conic_gaussian
     j->classes[pixel] = (uint8_t)p.class;
   if (j->judging->ranges)
     j->judging->ranges[pixel] = range_of_pixel(&p);
+  if (j->judging->faults)
+    j->judging->faults[pixel] = p.faults;
   if (p.class != CONIC_PIXEL_WRONG)
     return;
   p.fault.x = (int)(pixel % (size_t)j->image->width);
