@@ -87,6 +87,8 @@ static conic_status find_out(cli_session *session, cli_judge_job *job) {
   at = pass_stage(job, CLI_JUDGE_JUDGE, at);
   if (status == CONIC_OK && job->found.n_worst)
     status = cli_judge_explain(session, job);
+  if (status == CONIC_OK && job->found.vague && job->scene.shot.view.samples == 1)
+    status = cli_judge_explain_vague(session, job);
   at = pass_stage(job, CLI_JUDGE_EXPLAIN, at);
   if (status == CONIC_OK)
     conic_faults_locate(&job->picture.image, job->picture.greatest.width ? &job->picture.greatest : NULL, job->classes,
@@ -122,7 +124,7 @@ static int tell_judged(cli_session *session, const cli_judge_job *job) {
     return exit_code;
   if (cli_json_leaves_text(session))
     cli_judge_print(job);
-  return cli_judge_is_right(job) ? CLI_DONE : CLI_DIFFERENT;
+  return cli_judge_is_right(job) && !cli_judge_is_undecided(job) ? CLI_DONE : CLI_DIFFERENT;
 }
 
 static int judge_scene(cli_session *session, cli_judge_job *job) {
@@ -209,6 +211,8 @@ static int run_judge(cli_session *session, int argc, char **argv) {
       {"no-diagnosis", CLI_FLAG, &job.skips_diagnosis, NULL,
        "don't look for the mistake that explains wrong pixels, which may take longer than judging them",
        .acts.is_work = 1},
+      {"allow-vague", CLI_FLAG, &job.allows_vague, NULL,
+       "a picture may be right although more than 1 % of its pixels may be anything within more than 1/255"},
       {"time", CLI_FLAG, &job.shows_times, NULL, "print what each stage took", .acts.is_work = 1},
       CLI_SUITE_OPTIONS(suite),
       CLI_GRADIENT_OPTIONS(gradients),

@@ -37,7 +37,9 @@ typedef struct cli_judge_worst {
 /* The findings, for either kind of scene. */
 typedef struct cli_judgement {
   size_t pixels[CONIC_N_PIXEL_CLASSES], judged, covered, doubtful, n_whole;
-  size_t vague; /* of a Gaussian scene: pixels whose colours have a range wider than 1/255 */
+  size_t vague;                            /* of a Gaussian scene: pixels whose colours have a range wider than 1/255 */
+  uint32_t vague_by[CLI_JUDGE_MOST_PARTS]; /* the Gaussians of the vaguest pixel that are most in doubt */
+  int n_vague_by;
   const char *reasons[CLI_JUDGE_MOST_REASONS]; /* null past the last */
   size_t explained_by[CLI_JUDGE_MOST_REASONS];
   conic_oracle_plane_verdict planes[CONIC_MAX_PLANES];
@@ -57,7 +59,7 @@ typedef struct cli_judge_job {
   unsigned long long n_pixels, max_wrong;            /* n_pixels 0: all */
   int floats;                                        /* a conic_float_kind */
   int transfer, is_transfer_given;                   /* 0 linear, 1 srgb */
-  int shows_times, skips_diagnosis;
+  int shows_times, skips_diagnosis, allows_vague;
   conic_picture_options reading;
   int argc; /* the command line, for the report */
   char **argv;
@@ -75,6 +77,8 @@ typedef struct cli_judge_job {
 
 /* Whether no more pixels are wrong than allowed. */
 int cli_judge_is_right(const cli_judge_job *job);
+/* Whether it is right only because too many pixels may be nearly anything. */
+int cli_judge_is_undecided(const cli_judge_job *job);
 
 /* Compare the picture with a Gaussian scene's profile, or with a method's reference of splats and triangles. The scene
  * is open and its camera known. */
@@ -83,6 +87,9 @@ conic_status cli_judge_splats(cli_session *session, cli_judge_job *job);
 
 /* Finds what the worst pixels are made of. */
 conic_status cli_judge_explain(cli_session *session, cli_judge_job *job);
+
+/* Finds which Gaussians make the vaguest pixel so. Called if there are vague pixels. */
+conic_status cli_judge_explain_vague(cli_session *session, cli_judge_job *job);
 
 /* Finds the fault that explains the wrong pixels best, into job->found.faults. Called if there are any. */
 conic_status cli_judge_diagnose(cli_session *session, cli_judge_job *job);

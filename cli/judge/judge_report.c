@@ -126,7 +126,7 @@ static conic_status put_worst(const cli_page *page, const cli_judge_job *job, co
 
 static void put_head(const cli_page *page, const cli_judge_job *job) {
   const cli_judgement *found = &job->found;
-  int is_right = cli_judge_is_right(job);
+  const char *verdict = cli_judge_is_undecided(job) ? "undecided" : cli_judge_is_right(job) ? "right" : "wrong";
   fputs("<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8><title>conic judge</title><style>\n"
         "body{font:15px/1.45 system-ui,sans-serif;max-width:62rem;margin:2rem auto;padding:0 1rem;color:#222;"
         "background:#fff}\n"
@@ -141,8 +141,7 @@ static void put_head(const cli_page *page, const cli_judge_job *job) {
         "overflow-wrap:anywhere}\n"
         ".right{color:#176b2c} .wrong{color:#b00020}\n</style></head><body>\n",
         page->to);
-  fprintf(page->to, "<h1>The picture is <span class=%s>%s</span></h1>\n<p>", is_right ? "right" : "wrong",
-          is_right ? "right" : "wrong");
+  fprintf(page->to, "<h1>The picture is <span class=%s>%s</span></h1>\n<p>", verdict, verdict);
   fprintf(page->to, "%zu of %zu judged pixels are wrong", found->pixels[CONIC_PIXEL_WRONG], found->judged);
   if (found->judged < found->n_whole)
     fprintf(page->to, ", of the %zu that the picture has", found->n_whole);

@@ -8,6 +8,10 @@ int cli_judge_is_right(const cli_judge_job *job) {
   return job->found.pixels[CONIC_PIXEL_WRONG] <= job->max_wrong;
 }
 
+int cli_judge_is_undecided(const cli_judge_job *job) {
+  return cli_judge_is_right(job) && !job->allows_vague && job->found.vague > job->found.judged / 100;
+}
+
 static const char *const stage_names[CLI_JUDGE_N_STAGES] = {"read", "open", "judge", "explain", "diagnose", "show"};
 
 static const char *channel_name(const conic_oracle_fault *fault) {
@@ -117,10 +121,21 @@ static int is_diagnosed(const cli_judgement *found) {
   return found->n_faults > 0 && !found->faults[0].is_nearest;
 }
 
+static void print_vague(const cli_judge_job *job) {
+  const cli_judgement *found = &job->found;
+  printf("vague     %zu pixels may be anything within more than 1/255", found->vague);
+  for (int k = 0; k < found->n_vague_by; k++)
+    printf("%s %lu", k ? "," : ", most of all by Gaussians", (unsigned long)found->vague_by[k]);
+  puts(cli_judge_is_undecided(job) ? "; --allow-vague takes that for right" : "");
+}
+
 void cli_judge_print(const cli_judge_job *job) {
   const cli_judgement *found = &job->found;
   int is_composited = cli_is_composited(&job->scene);
-  printf("%s: %zu of %zu judged pixels are wrong", cli_judge_is_right(job) ? "right" : "WRONG",
+  printf("%s: %zu of %zu judged pixels are wrong",
+         cli_judge_is_undecided(job) ? "UNDECIDED"
+         : cli_judge_is_right(job)   ? "right"
+                                     : "WRONG",
          found->pixels[CONIC_PIXEL_WRONG], found->judged);
   if (found->judged < found->n_whole)
     printf(" (the picture has %zu)", found->n_whole);
@@ -131,9 +146,7 @@ void cli_judge_print(const cli_judge_job *job) {
          found->pixels[CONIC_PIXEL_ROUNDED], found->pixels[CONIC_PIXEL_EXPLAINED], found->pixels[CONIC_PIXEL_WRONG]);
   print_explained(found);
   if (found->vague)
-    printf("vague     %zu pixels may be anything within more than 1/255; --floats strict or own bounds them more "
-           "tightly\n",
-           found->vague);
+    print_vague(job);
   for (int i = 0; i < CONIC_N_PLANES; i++)
     if (found->planes[i].is_compared)
       printf("%-9s max %.4g\n", conic_plane_describe((conic_plane)i)->name, found->planes[i].max_abs);
@@ -240,15 +253,23 @@ void cli_judge_members(cli_json *json, const void *cookie) {
   const cli_judge_job *job = cookie;
   const cli_judgement *found = &job->found;
   double total = 0.0;
-  cli_json_text(json, "verdict", cli_judge_is_right(job) ? "right" : "wrong");
+  cli_json_text(json, "verdict",
+                cli_judge_is_undecided(job) ? "undecided"
+                : cli_judge_is_right(job)   ? "right"
+                                            : "wrong");
   cli_json_object(json, "pixels");
   for (int k = 0; k < CONIC_N_PIXEL_CLASSES; k++)
     cli_json_count(json, cli_class_words[k], found->pixels[k]);
   cli_json_close(json);
   cli_json_counts(json, NULL, {"max_wrong", job->max_wrong}, {"judged_pixels", found->judged},
                   {"covered_pixels", found->covered}, {"doubtful_pixels", found->doubtful});
-  if (cli_is_composited(&job->scene))
+  if (cli_is_composited(&job->scene)) {
     cli_json_count(json, "vague_pixels", found->vague);
+    cli_json_array(json, "vague_by");
+    for (int k = 0; k < found->n_vague_by; k++)
+      cli_json_count(json, NULL, found->vague_by[k]);
+    cli_json_close(json);
+  }
   cli_json_object(json, "explained_by");
   for (int k = 0; k < CLI_JUDGE_MOST_REASONS && found->reasons[k]; k++)
     cli_json_count(json, found->reasons[k], found->explained_by[k]);

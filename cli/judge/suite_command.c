@@ -66,6 +66,13 @@ static conic_status judge_cases(suite_run *run) {
     cli_error(CLI_INPUT, "%s: the suite has no case of these profiles and levels", run->judging.suite);
     status = CONIC_ERROR_INPUT;
   }
+  size_t n_missing = 0;
+  for (size_t i = 0; status == CONIC_OK && i < run->n; i++)
+    n_missing += run->verdicts[i].outcome == SUITE_IS_MISSING;
+  if (status == CONIC_OK && n_missing == run->n) {
+    cli_error(CLI_INPUT, "%s: nothing to judge: no case has its picture there", run->judging.pictures);
+    status = CONIC_ERROR_INPUT;
+  }
   return status;
 }
 

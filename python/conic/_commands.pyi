@@ -465,6 +465,7 @@ def judge(
     clipped: Optional[bool] = None,
     straight: Optional[bool] = None,
     no_diagnosis: Optional[bool] = None,
+    allow_vague: Optional[bool] = None,
     time: Optional[bool] = None,
     suite: Optional[PathLike] = None,
     pictures: Optional[PathLike] = None,
@@ -542,6 +543,8 @@ def judge(
     clipped: colours of 0 and 1 stand for what is beyond, in floats, too
     straight: colours are not multiplied by alpha; of a PNG they never are
     no_diagnosis: don't look for the mistake that explains wrong pixels, which may take longer than judging them
+    allow_vague: a picture may be right although more than 1 % of its pixels may be anything within more than
+        1/255
     time: print what each stage took
     suite: judge what conic conformance wrote, in the place of a scene
     pictures: of a suite: where CASE.exr, .pfm, .npy, .npz or .png are, planes beside them

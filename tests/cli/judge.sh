@@ -51,8 +51,12 @@ has '^diagnosis the picture is blank'
 run 1 judge many.ply --camera before.json --profile gsplat-1.6 --picture blank.pfm --no-diagnosis
 if grep -q '^diagnosis' out; then fail "--no-diagnosis diagnoses"; fi
 run 0 render many.ply --camera inside.json --profile gsplat-1.6 -o inside.exr
-run 0 judge many.ply --camera inside.json --profile gsplat-1.6 --picture inside.exr
-has '^vague     [1-9]'
+run 1 judge many.ply --camera inside.json --profile gsplat-1.6 --picture inside.exr --json j.json
+has '^UNDECIDED: 0 of 768'
+has '^vague     [1-9].* by Gaussians [0-9]'
+grep -q '"verdict": "undecided"' j.json || fail "the JSON does not say undecided"
+run 0 judge many.ply --camera inside.json --profile gsplat-1.6 --picture inside.exr --allow-vague
+has '^right: 0 of 768'
 
 # Splats by every method, a mesh and a hybrid; conic's own files say how many samples they have.
 run 0 make knot -n 500 -o knot.ply
