@@ -79,7 +79,10 @@ static void take_samples(const surfels_drawing *w, const conic_planted *p, const
                          conic_channels *values) {
   const float *matt = w->matt.planes[CONIC_PLANE_RGBA];
   for (size_t i = 0; i < s->n; i++) {
-    size_t x = s->places[i][0], y = s->places[i][1];
+    int at[2] = {s->places[i][0] - p->moves[0], s->places[i][1] - p->moves[1]};
+    at[0] = at[0] < 0 ? 0 : at[0] < s->width ? at[0] : s->width - 1;
+    at[1] = at[1] < 0 ? 0 : at[1] < s->height ? at[1] : s->height - 1;
+    size_t x = (size_t)at[0], y = (size_t)at[1];
     x = p->mirrors[0] ? (size_t)s->width - 1 - x : x;
     y = p->mirrors[1] ? (size_t)s->height - 1 - y : y;
     const size_t pixel = y * (size_t)s->width + x;

@@ -232,6 +232,14 @@ void conic_planted_finish(const conic_planted *p, size_t n, conic_channels *valu
       if (p->transfer)
         v[c] = conic_planted_transferred(p->transfer, v[c]);
     }
+    if (p->is_bgr) {
+      const float red = v[0];
+      v[0] = v[2];
+      v[2] = red;
+    }
+    for (int c = 0; c < 3 && p->is_clipped; c++)
+      v[c] = v[c] > 0.0f ? (v[c] < 1.0f ? v[c] : 1.0f) : 0.0f;
+    v[CONIC_CHANNEL_Z] *= p->has_raw_z ? v[CONIC_CHANNEL_WEIGHT] : 1.0f;
     v[CONIC_CHANNEL_A] = p->is_opaque ? 1.0f : 1.0f - T;
   }
 }

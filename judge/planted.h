@@ -70,7 +70,15 @@ typedef struct conic_planted {
   float falloff_end; /* half of the q at which the falloff is 0; 0: it has no such end */
   int has_unit_volume;
   double least_z;    /* nearer means are left out */
-  float shift_px[2]; /* between the places on the screen and those where the camera sees them */
+  float form_factor; /* of the form of q; 0: none */
+  int changes_cross; /* its mixed term is multiplied by … */
+  float cross_factor;
+  unsigned harmonic_signs; /* bits of the harmonics whose sign is the other */
+  float color_offset;      /* added to each channel of a Gaussian's own colour, before its limit */
+  int takes_any_color;     /* that has no limit at 0 … */
+  int limits_color;        /* … or one at 1, too */
+  int takes_translation;   /* the eye, for harmonics, is the camera's translation */
+  float shift_px[2];       /* between the places on the screen and those where the camera sees them */
   int most_degree;
   conic_planted_reading harmonics, rotation, scale, opacity;
   conic_planted_transfer own_transfer; /* of each Gaussian's own colour */
@@ -80,7 +88,8 @@ typedef struct conic_planted {
   unsigned slips;
   double axes;
   /* Of the picture: */
-  int mirrors[2];
+  int mirrors[2], moves[2];          /* moves: in whole pixels */
+  int is_bgr, is_clipped, has_raw_z; /* raw: not divided by alpha */
   float behind[3];
   int is_opaque;
   conic_planted_alpha alpha;
@@ -94,7 +103,7 @@ typedef struct conic_suspect {
   double value;
 } conic_suspect;
 
-enum { CONIC_MOST_SUSPECTS = 160 };
+enum { CONIC_MOST_SUSPECTS = 256 };
 
 /* Fills in the mistakes that pictures drawn so could have; returns how many. Profiles come last. */
 int conic_suspects_of_gaussians(const conic_planted *right, conic_suspect suspects[CONIC_MOST_SUSPECTS]);
@@ -108,6 +117,8 @@ int conic_suspect_rank(const conic_suspect *suspect);
 /* Whether the mistake is in finishing the picture, so that nothing is drawn anew. */
 int conic_suspect_is_finish(const conic_suspect *suspect);
 int conic_suspect_is_profile(const conic_suspect *suspect);
+/* Whether it is not tried as the second of two. */
+int conic_suspect_is_alone(const conic_suspect *suspect);
 /* Whether it is drawn only roughly as renderers with that mistake do. */
 int conic_suspect_is_rough(const conic_suspect *suspect);
 /* Whether any value is possible: the listed ones are only some. */

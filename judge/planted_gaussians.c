@@ -62,6 +62,9 @@ static size_t place_of_harmonic(conic_planted_reading reading, size_t n, size_t 
   return reading == CONIC_READING_TWICE ? raw : 3 * k + c;
 }
 
+/* A colour that is above this far below 0 has no limit there, if this is added before and taken away again. */
+static const float any_color = 8.0f;
+
 static void plant_harmonics(const conic_planted *p, const conic_gaussians *from, size_t first, conic_gaussians *to,
                             float *sh) {
   const size_t n_from = conic_harmonics_of_degree(from->sh_degree), n_to = conic_harmonics_of_degree(to->sh_degree);
@@ -69,9 +72,12 @@ static void plant_harmonics(const conic_planted *p, const conic_gaussians *from,
   for (size_t i = 0; i < to->count; i++) {
     const float *own = conic_gaussians_harmonics(from, first + i, room);
     for (size_t c = 0; c < 3; c++) {
-      sh[i * n_to + c] = own[c];
-      for (size_t k = 0; 3 * k + 3 < n_to; k++)
-        sh[i * n_to + 3 * (k + 1) + c] = own[3 + place_of_harmonic(p->harmonics, n_from / 3 - 1, k, c)];
+      const float offset = p->color_offset + (p->takes_any_color ? any_color : 0.0f);
+      sh[i * n_to + c] = own[c] + offset / 0.28209479f;
+      for (size_t k = 0; 3 * k + 3 < n_to; k++) {
+        const float value = own[3 + place_of_harmonic(p->harmonics, n_from / 3 - 1, k, c)];
+        sh[i * n_to + 3 * (k + 1) + c] = p->harmonic_signs >> (k + 1) & 1 ? -value : value;
+      }
     }
   }
   to->sh = sh;
@@ -108,7 +114,8 @@ static conic_gaussians planted_read(const conic_planted *p, const conic_gaussian
   to.sh = from->sh ? from->sh + first * n_harmonics : NULL;
   to.sh_half = from->sh_half ? from->sh_half + first * n_harmonics : NULL;
   to.sh_degree = p->most_degree < from->sh_degree ? p->most_degree : from->sh_degree;
-  if (p->harmonics || to.sh_degree < from->sh_degree)
+  if (from->sh_degree >= 0 && (p->harmonics || p->harmonic_signs || p->color_offset != 0.0f || p->takes_any_color ||
+                               to.sh_degree < from->sh_degree))
     plant_harmonics(p, from, first, &to, room->sh);
   return to;
 }
@@ -213,6 +220,22 @@ static void give_unit_volume(conic_gaussian_footprint *f) {
   f->opacity *= sqrtf(determinant) * 0.15915494f;
 }
 
+/* Changes the form of q, and widens the box by as much. */
+static void change_form(const conic_planted *p, conic_gaussian_footprint *f) {
+  const float factor = p->form_factor > 0.0f ? p->form_factor : 1.0f;
+  const float center[2] = {(float)f->x - f->dx, (float)f->y - f->dy}, wider = 1.0f / sqrtf(factor);
+  const int size[2] = {p->camera.width, p->camera.height};
+  for (int k = 0; k < 3; k++)
+    f->form[k] *= factor;
+  f->form[1] *= p->form_factor > 0.0f ? 1.0f : p->cross_factor;
+  for (int axis = 0; axis < 2; axis++) {
+    const float first = floorf(center[axis] - wider * (center[axis] - (float)f->box[0][axis]) - 1.0f);
+    const float last = ceilf(center[axis] + wider * ((float)f->box[1][axis] - center[axis]) + 1.0f);
+    f->box[0][axis] = (uint16_t)(first > 0.0f ? first : 0.0f);
+    f->box[1][axis] = (uint16_t)(last < (float)size[axis] ? last : (float)(size[axis] - 1));
+  }
+}
+
 static void keep_one(planted_job *j, const conic_gaussians *run, size_t i, size_t first, kept_room *room) {
   const conic_planted *p = j->planted;
   float key;
@@ -228,10 +251,17 @@ static void keep_one(planted_job *j, const conic_gaussians *run, size_t i, size_
       conic_gaussian_set_up(&j->view, run, i, &k->footprint, &key, &k->ray, &k->filter, &k->sight, k->normal);
   if (fate == CONIC_GAUSSIAN_DRAWN && (p->shift_px[0] != 0.0f || p->shift_px[1] != 0.0f))
     grow_box(p, &k->footprint);
+  if (fate == CONIC_GAUSSIAN_DRAWN && (p->form_factor > 0.0f || p->changes_cross))
+    change_form(p, &k->footprint);
   if (fate != CONIC_GAUSSIAN_DRAWN || !meets_sample(j, &k->footprint))
     return;
   if (p->has_unit_volume)
     give_unit_volume(&k->footprint);
+  for (int c = 0; c < 3; c++) {
+    k->footprint.color[c] -= p->takes_any_color ? any_color : 0.0f;
+    if (p->limits_color && k->footprint.color[c] > 1.0f)
+      k->footprint.color[c] = 1.0f;
+  }
   for (int c = 0; c < 3 && p->own_transfer; c++)
     k->footprint.color[c] = conic_planted_transferred(p->own_transfer, k->footprint.color[c]);
   const uint32_t index = (uint32_t)(first + i);
@@ -339,6 +369,7 @@ static void look(planted_job *j, int is_affine) {
                                   .rays = is_affine ? NULL : &j->rays};
   for (int axis = 0; axis < 3; axis++) {
     double eye = -(rows[0][axis] * rows[0][3] + rows[1][axis] * rows[1][3] + rows[2][axis] * rows[2][3]);
+    eye = p->takes_translation ? rows[axis][3] : eye;
     j->view.eye[axis] = p->rules.has_float_eye ? (double)(float)eye : eye;
   }
   j->frame.view = &j->view;

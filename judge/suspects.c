@@ -23,14 +23,25 @@ enum {
   OF_CENTER,
   OF_FOCAL,
   OF_OWN_TRANSFER,
+  OF_SIGNS,
+  OF_OFFSET,
+  OF_EYE,
+  OF_FORM,
+  OF_CROSS,
+  OF_ALPHA_LEAST,
+  OF_LIMIT,
   OF_METHOD,
   OF_SLIP,
   OF_AXES,
   OF_FACING,
   OF_MIRROR,
-  OF_ALPHA,
+  OF_MOVE,
+  OF_ALPHA, /* in finishing, from here on */
   OF_BACKGROUND,
-  OF_TRANSFER
+  OF_TRANSFER,
+  OF_BGR,
+  OF_CLIP,
+  OF_RAW_Z
 };
 
 /* A mistake in its n readings. A shift's `how` and value are half pixels in x and in y; falloffs end at 4, 4.5, ln 255
@@ -46,6 +57,8 @@ static const suspected of_gaussians[] = {
     {"half-pixel", OF_SHIFT, 8, {-1, 1, -1, 1, -1, 1, 0, 0}, {-1.0, 1.0, 1.0, -1.0, 0.0, 0.0, -1.0, 1.0}},
     {"dilation-0", OF_DILATION, 1, {0}, {0.0}},
     {"dilation-0.1", OF_DILATION, 1, {0}, {0.1}},
+    {"dilation-0.5", OF_DILATION, 1, {0}, {0.5}},
+    {"dilation-1", OF_DILATION, 1, {0}, {1.0}},
     {"extent-3-sigma",
      OF_EXTENT,
      8,
@@ -55,6 +68,10 @@ static const suspected of_gaussians[] = {
     {"extent-exact", OF_EXTENT, 1, {CONIC_EXTENT_EXACT}, {0.0}},
     {"alpha-max-0.999", OF_ALPHA_MOST, 1, {0}, {0.999}},
     {"alpha-max-0.99", OF_ALPHA_MOST, 1, {0}, {0.99}},
+    {"alpha-max-1", OF_ALPHA_MOST, 1, {0}, {1.0}},
+    {"alpha-min-0", OF_ALPHA_LEAST, 1, {0}, {1e-9}},
+    {"exp2", OF_FORM, 1, {0}, {0.6931471805599453}},
+    {"cross-term", OF_CROSS, 4, {0}, {0.5, 2.0, -1.0, 0.0}},
     {"falloff-renormalised", OF_FALLOFF, 5, {0, 0, 0, 0, 1}, {4.0, 4.5, 5.5412635, 2.0, 0.0}},
     {"order-distance", OF_ORDER, 2, {0, 1}, {CONIC_ORDER_DISTANCE, CONIC_ORDER_DISTANCE}},
     {"order-file", OF_ORDER, 2, {0, 1}, {CONIC_ORDER_FILE, CONIC_ORDER_FILE}},
@@ -68,6 +85,16 @@ static const suspected of_gaussians[] = {
     {"sh-degree-0", OF_DEGREE, 1, {0}, {0.0}},
     {"sh-degree-1", OF_DEGREE, 1, {1}, {0.0}},
     {"sh-degree-2", OF_DEGREE, 1, {2}, {0.0}},
+    {"sh-direction", OF_SIGNS, 1, {0xfe0e}, {0.0}}, /* odd degrees change their signs with the direction */
+    {"sh-direction", OF_EYE, 1, {1}, {0.0}},
+    {"sh-sign",
+     OF_SIGNS,
+     18,
+     {2, 4, 8, 10, 14, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768, 65534},
+     {0.0}},
+    {"sh-offset", OF_OFFSET, 1, {0}, {-0.5}},
+    {"colours-not-clamped", OF_LIMIT, 1, {0}, {0.0}},
+    {"colours-clamped", OF_LIMIT, 1, {1}, {0.0}},
     {"f-rest-interleaved", OF_HARMONICS, 2, {CONIC_READING_RAW, CONIC_READING_TWICE}, {0.0}},
     {"quaternion-xyzw", OF_ROTATION, 2, {CONIC_READING_RAW, CONIC_READING_TWICE}, {0.0}},
     {"quaternion-conjugate", OF_ROTATION, 1, {CONIC_READING_CONJUGATE}, {0.0}},
@@ -98,7 +125,12 @@ static const suspected of_all[] = {
     {"mirrored-x", OF_CAMERA_MIRROR, 1, {0}, {0.0}},
     {"mirrored-y", OF_MIRROR, 1, {1}, {0.0}},
     {"mirrored-y", OF_CAMERA_MIRROR, 1, {1}, {0.0}},
+    {"shifted", OF_MOVE, 8, {-1, 1, 0, 0, -1, 1, -1, 1}, {0.0, 0.0, -1.0, 1.0, -1.0, 1.0, 1.0, -1.0}},
+    {"bgr", OF_BGR, 1, {0}, {0.0}},
+    {"clipped", OF_CLIP, 1, {0}, {0.0}},
+    {"z-not-divided", OF_RAW_Z, 1, {0}, {0.0}},
     {"centre-ignored", OF_CENTER, 3, {3, 1, 2}, {0.0}},
+    {"centre-flipped", OF_CENTER, 3, {4, 8, 12}, {0.0}},
     {"field-of-view", OF_FOCAL, 4, {0, 1, 2, 3}, {0.0}},
     {"srgb-decoded",
      OF_TRANSFER,
@@ -179,6 +211,8 @@ static void plant_in_camera(conic_camera *camera, const conic_suspect *s) {
   } else if (s->kind == OF_CENTER) {
     camera->cx = s->how & 1 ? 0.5 * camera->width : camera->cx;
     camera->cy = s->how & 2 ? 0.5 * camera->height : camera->cy;
+    camera->cx = s->how & 4 ? camera->width - camera->cx : camera->cx;
+    camera->cy = s->how & 8 ? camera->height - camera->cy : camera->cy;
   } else
     change_focal(camera, s->how);
 }
@@ -204,6 +238,26 @@ static void plant_in_scene(const conic_suspect *s, conic_planted *p) {
   case OF_OPACITY:
     p->opacity = (conic_planted_reading)s->how;
     break;
+  case OF_SIGNS:
+    p->harmonic_signs = (unsigned)s->how;
+    break;
+  case OF_OFFSET:
+    p->color_offset = (float)s->value;
+    break;
+  case OF_EYE:
+    p->takes_translation = 1;
+    break;
+  case OF_FORM:
+    p->form_factor = (float)s->value;
+    break;
+  case OF_CROSS:
+    p->changes_cross = 1;
+    p->cross_factor = (float)s->value;
+    break;
+  case OF_LIMIT:
+    p->takes_any_color = !s->how;
+    p->limits_color = s->how;
+    break;
   case OF_OWN_TRANSFER:
     p->own_transfer = (conic_planted_transfer)s->how;
     break;
@@ -226,6 +280,15 @@ static void plant_in_picture(const conic_suspect *s, conic_planted *p) {
     p->mirrors[s->how] = 1;
   else if (s->kind == OF_ALPHA)
     p->alpha = (conic_planted_alpha)s->how;
+  else if (s->kind == OF_MOVE) {
+    p->moves[0] = s->how;
+    p->moves[1] = (int)s->value;
+  } else if (s->kind == OF_BGR)
+    p->is_bgr = 1;
+  else if (s->kind == OF_CLIP)
+    p->is_clipped = 1;
+  else if (s->kind == OF_RAW_Z)
+    p->has_raw_z = 1;
   else if (s->kind == OF_TRANSFER)
     p->transfer = (conic_planted_transfer)s->how;
   else {
@@ -244,6 +307,9 @@ void conic_suspect_plant(const conic_suspect *s, conic_planted *p) {
     break;
   case OF_ALPHA_MOST:
     p->rules.alpha_most = (float)s->value;
+    break;
+  case OF_ALPHA_LEAST:
+    p->rules.alpha_least = (float)s->value;
     break;
   case OF_FALLOFF:
     p->falloff_end = (float)s->value;
@@ -272,9 +338,13 @@ void conic_suspect_plant(const conic_suspect *s, conic_planted *p) {
     plant_in_camera(&p->camera, s);
     break;
   case OF_MIRROR:
+  case OF_MOVE:
   case OF_ALPHA:
   case OF_BACKGROUND:
   case OF_TRANSFER:
+  case OF_BGR:
+  case OF_CLIP:
+  case OF_RAW_Z:
     plant_in_picture(s, p);
     break;
   default:
@@ -288,6 +358,11 @@ int conic_suspect_rank(const conic_suspect *suspect) {
 
 int conic_suspect_is_finish(const conic_suspect *suspect) {
   return suspect->kind >= OF_ALPHA;
+}
+
+int conic_suspect_is_alone(const conic_suspect *suspect) {
+  return (suspect->kind >= OF_SIGNS && suspect->kind <= OF_LIMIT) || suspect->kind == OF_MOVE ||
+         suspect->kind >= OF_BGR;
 }
 
 int conic_suspect_is_rough(const conic_suspect *suspect) {
@@ -304,6 +379,8 @@ int conic_suspect_is_profile(const conic_suspect *suspect) {
 
 static int has_other_center(const conic_camera *c, int how) {
   int across = fabs(c->cx - 0.5 * c->width) > 1e-6, down = fabs(c->cy - 0.5 * c->height) > 1e-6;
+  if (how > 3)
+    return (across || how == 8) && (down || how == 4);
   return how == 3 ? across || down : across && down && how; /* a single axis only where both would be moved */
 }
 
@@ -338,6 +415,18 @@ static int is_mistake(const conic_planted *right, const conic_suspect *s) {
   case OF_DEGREE:
   case OF_HARMONICS:
     return right->most_degree > (s->kind == OF_DEGREE ? s->how : 0);
+  case OF_SIGNS:
+    return s->how == 0xfe0e || s->how == 65534 ? right->most_degree > 0
+           : s->how < 16                       ? right->most_degree > 0
+           : s->how < 512                      ? right->most_degree > 1
+                                               : right->most_degree > 2;
+  case OF_FORM:
+  case OF_CROSS:
+    return is_ellipse;
+  case OF_ALPHA_LEAST:
+    return rules->alpha_least > (float)s->value;
+  case OF_EYE:
+    return right->most_degree > 0;
   case OF_NEAR:
     return rules->near_z != s->value;
   case OF_CENTER:

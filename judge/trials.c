@@ -182,7 +182,8 @@ static conic_status try_beside(trial_run *r, int first, trial *pair) {
   for (int pass = 0; pass < 2; pass++)
     for (int i = 0; i < r->t->n_suspects && status == CONIC_OK; i++) {
       trial new = {.first = first, .second = i};
-      if (is_same_name(r->t, first, i) || conic_suspect_is_finish(&r->t->suspects[i]) == pass ||
+      if (is_same_name(r->t, first, i) || conic_suspect_is_alone(&r->t->suspects[i]) ||
+          conic_suspect_is_finish(&r->t->suspects[i]) == pass ||
           (conic_suspect_is_profile(&r->t->suspects[i]) && conic_suspect_is_profile(&r->t->suspects[first])))
         continue;
       status = try_planted(r, &new);
@@ -198,7 +199,8 @@ static conic_status try_finishes(trial_run *r, trial *pair) {
   for (int i = 0; i < r->t->n_suspects; i++)
     for (int k = 0; k < i && status == CONIC_OK; k++) {
       trial new = {.first = k, .second = i};
-      if (is_same_name(r->t, i, k) || !conic_suspect_is_finish(&r->t->suspects[i]) ||
+      if (is_same_name(r->t, i, k) || conic_suspect_is_alone(&r->t->suspects[i]) ||
+          conic_suspect_is_alone(&r->t->suspects[k]) || !conic_suspect_is_finish(&r->t->suspects[i]) ||
           !conic_suspect_is_finish(&r->t->suspects[k]))
         continue;
       status = try_planted(r, &new);
