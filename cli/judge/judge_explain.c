@@ -59,35 +59,25 @@ static conic_status explain_gaussian_pixels(cli_session *session, cli_judge_job 
 
 conic_status cli_judge_explain_vague(cli_session *session, cli_judge_job *job) {
   const conic_gaussian_options options = cli_gaussian_options(&job->scene);
-  double widths[CLI_JUDGE_MOST_PARTS];
+  const int width = job->camera.width;
   conic_gaussian_listing listing;
   conic_float_model model;
-  size_t vaguest = 0;
+  size_t at = 0;
   for (size_t i = 0; i < job->found.n_whole; i++)
-    vaguest = job->ranges[i] > job->ranges[vaguest] ? i : vaguest;
+    at = job->ranges[i] > job->ranges[at] ? i : at;
   conic_float_model_init(&model, (conic_float_kind)job->floats);
-  conic_status status = conic_gaussian_explain(
-      session->context, conic_source_gaussians(job->scene.source), &job->camera, &options, &model,
-      (int)(vaguest % (size_t)job->camera.width), (int)(vaguest / (size_t)job->camera.width), &listing);
-  for (size_t i = 0; status == CONIC_OK && i < listing.n; i++) {
+  conic_status status =
+      conic_gaussian_explain(session->context, conic_source_gaussians(job->scene.source), &job->camera, &options,
+                             &model, (int)at % width, (int)at / width, &listing);
+  if (status != CONIC_OK)
+    return status;
+  for (size_t i = 0; i < listing.n; i++) {
     const conic_gaussian_entry *e = &listing.entries[i];
-    const double width = e->alpha_high - e->alpha_low;
-    int at = job->found.n_vague_by;
-    while (at > 0 && width > widths[at - 1])
-      at--;
-    if (!(width > 0.0) || at == CLI_JUDGE_MOST_PARTS)
-      continue;
-    job->found.n_vague_by += job->found.n_vague_by < CLI_JUDGE_MOST_PARTS;
-    for (int k = job->found.n_vague_by - 1; k > at; k--) {
-      widths[k] = widths[k - 1];
-      job->found.vague_by[k] = job->found.vague_by[k - 1];
-    }
-    widths[at] = width;
-    job->found.vague_by[at] = e->index;
+    if (e->alpha_high > e->alpha_low)
+      keep_part(&job->found.vaguest, &(cli_judge_part){.index = e->index, .weight = e->alpha_high - e->alpha_low});
   }
-  if (status == CONIC_OK)
-    conic_gaussian_listing_release(session->context, &listing);
-  return status;
+  conic_gaussian_listing_release(session->context, &listing);
+  return CONIC_OK;
 }
 
 static conic_status explain_splat_pixel(conic_contributions *contributions, cli_judge_worst *w) {

@@ -37,9 +37,8 @@ typedef struct cli_judge_worst {
 /* The findings, for either kind of scene. */
 typedef struct cli_judgement {
   size_t pixels[CONIC_N_PIXEL_CLASSES], judged, covered, doubtful, n_whole;
-  size_t vague;                            /* of a Gaussian scene: pixels whose colours have a range wider than 1/255 */
-  uint32_t vague_by[CLI_JUDGE_MOST_PARTS]; /* the Gaussians of the vaguest pixel that are most in doubt */
-  int n_vague_by;
+  size_t vague;            /* of a Gaussian scene: pixels whose colours have a range wider than 1/255 */
+  cli_judge_worst vaguest; /* the vaguest pixel's Gaussians that are most in doubt */
   const char *reasons[CLI_JUDGE_MOST_REASONS]; /* null past the last */
   size_t explained_by[CLI_JUDGE_MOST_REASONS];
   conic_oracle_plane_verdict planes[CONIC_MAX_PLANES];

@@ -124,8 +124,8 @@ static int is_diagnosed(const cli_judgement *found) {
 static void print_vague(const cli_judge_job *job) {
   const cli_judgement *found = &job->found;
   printf("vague     %zu pixels may be anything within more than 1/255", found->vague);
-  for (int k = 0; k < found->n_vague_by; k++)
-    printf("%s %lu", k ? "," : ", most of all by Gaussians", (unsigned long)found->vague_by[k]);
+  for (int k = 0; k < found->vaguest.n_parts; k++)
+    printf("%s %lu", k ? "," : ", most of all by Gaussians", (unsigned long)found->vaguest.parts[k].index);
   puts(cli_judge_is_undecided(job) ? "; --allow-vague takes that for right" : "");
 }
 
@@ -266,8 +266,8 @@ void cli_judge_members(cli_json *json, const void *cookie) {
   if (cli_is_composited(&job->scene)) {
     cli_json_count(json, "vague_pixels", found->vague);
     cli_json_array(json, "vague_by");
-    for (int k = 0; k < found->n_vague_by; k++)
-      cli_json_count(json, NULL, found->vague_by[k]);
+    for (int k = 0; k < found->vaguest.n_parts; k++)
+      cli_json_count(json, NULL, found->vaguest.parts[k].index);
     cli_json_close(json);
   }
   cli_json_object(json, "explained_by");

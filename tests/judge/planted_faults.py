@@ -3,7 +3,8 @@
     python3 planted_faults.py SOURCE CONIC [SCENES [FAULT …]]
 
 A fault is a change of the renderer's text, or of its finished picture. For each: what may be said of it, by name or by
-the kind of place; "" means that nothing need be said. A name besides these is a wrong name, and that is an error."""
+the kind of place; "" means that nothing need be said. A name besides these is a wrong name, and that is an error; of
+faults that are asked for by name, so is silence where something may be said."""
 
 import json
 import os
@@ -187,6 +188,7 @@ def judged(conic, work, camera, rgba, depth):
 
 
 def main(source, conic, scenes="5", *only):
+    n_silent = 0
     counts = {"rightly": 0, "wrong": 0, "none": 0, "unseen": 0}
     seconds = 0.0
     with tempfile.TemporaryDirectory() as work, np.errstate(all="ignore"):
@@ -216,11 +218,12 @@ def main(source, conic, scenes="5", *only):
                 else:
                     kind = "none"
                 counts[kind] += 1
+                n_silent += bool(only and may and kind != "rightly")
                 near = [d["name"] for d in found.get("nearest", [])]
                 tally.append(kind + (f"({'+'.join(said[:2])})" if said else f"[{'+'.join(near)}]" if near else ""))
             print(f"{name:22} {' '.join(tally)}", flush=True)
     print(" ".join(f"{kind} {n}" for kind, n in counts.items()), f"in {seconds:.1f} s")
-    return counts["wrong"] > 0
+    return counts["wrong"] > 0 or n_silent > 0
 
 
 if __name__ == "__main__":

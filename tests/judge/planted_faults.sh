@@ -1,0 +1,11 @@
+#!/usr/bin/env bash
+# conic judge on a plain numpy renderer with faults that many make: each is named, or its place is told, and no fault
+# gets a wrong name. scripts/judge-campaign BUILD faults plants all of them in more scenes.
+set -uo pipefail
+
+if ! python3 -c 'import numpy' 2> /dev/null; then
+  echo "skipped: python3-numpy is not installed"
+  exit 77
+fi
+python3 "$1/tests/judge/planted_faults.py" "$1" "$2" 1 alpha-squared-weight no-half sh-direction exp2 cross-half \
+  negative-colours black-tile-16 last-row-of-tiles lower-half every-third nan checkers bgr shift-1px alpha-1 right
