@@ -79,10 +79,8 @@ static void take_samples(const surfels_drawing *w, const conic_planted *p, const
                          conic_channels *values) {
   const float *matt = w->matt.planes[CONIC_PLANE_RGBA];
   for (size_t i = 0; i < s->n; i++) {
-    int at[2] = {s->places[i][0] - p->moves[0], s->places[i][1] - p->moves[1]};
-    at[0] = at[0] < 0 ? 0 : at[0] < s->width ? at[0] : s->width - 1;
-    at[1] = at[1] < 0 ? 0 : at[1] < s->height ? at[1] : s->height - 1;
-    size_t x = (size_t)at[0], y = (size_t)at[1];
+    size_t x = (size_t)(s->places[i][0] - p->moves[0] + s->width) % (size_t)s->width;
+    size_t y = (size_t)(s->places[i][1] - p->moves[1] + s->height) % (size_t)s->height;
     x = p->mirrors[0] ? (size_t)s->width - 1 - x : x;
     y = p->mirrors[1] ? (size_t)s->height - 1 - y : y;
     const size_t pixel = y * (size_t)s->width + x;

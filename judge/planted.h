@@ -36,6 +36,7 @@ typedef enum conic_planted_reading {
   CONIC_READING_RAW_LIMITED,   /* RAW, limited to 0 to 1 */
   CONIC_READING_TWICE,         /* undone twice, or undone where nothing was to undo */
   CONIC_READING_CONJUGATE,     /* conjugated quaternions */
+  CONIC_READING_WIDER,         /* scales are divided by √(ln 2) */
   CONIC_READING_LENGTH_SQUARED /* scales are multiplied by |q|² of the quaternion */
 } conic_planted_reading;
 
@@ -88,7 +89,7 @@ typedef struct conic_planted {
   unsigned slips;
   double axes;
   /* Of the picture: */
-  int mirrors[2], moves[2];          /* moves: in whole pixels */
+  int mirrors[2], moves[2];          /* moves: in whole pixels, and round the edges */
   int is_bgr, is_clipped, has_raw_z; /* raw: not divided by alpha */
   float behind[3];
   int is_opaque;

@@ -13,9 +13,7 @@ typedef struct composite_sums {
 void conic_planted_place(const conic_planted_frame *frame, const uint16_t place[2], int box[2][2]) {
   const int size[2] = {frame->planted->camera.width, frame->planted->camera.height};
   for (int axis = 0; axis < 2; axis++) {
-    int at = frame->samples * (place[axis] - frame->planted->moves[axis]);
-    at = at < 0 ? 0 : at > size[axis] - frame->samples ? size[axis] - frame->samples : at;
-    box[0][axis] = at;
+    box[0][axis] = (frame->samples * (place[axis] - frame->planted->moves[axis]) + size[axis]) % size[axis];
     box[1][axis] = box[0][axis] + frame->samples - 1;
     if (frame->planted->mirrors[axis]) {
       int last = size[axis] - 1 - box[0][axis];

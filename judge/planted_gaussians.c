@@ -28,6 +28,8 @@ static float planted_scale(conic_planted_reading reading, const conic_gaussians 
       scale =
           k == 0 ? from->rotation[0][i] * from->rotation[0][i] : scale + from->rotation[k][i] * from->rotation[k][i];
     return scale * from->scale[axis][i];
+  case CONIC_READING_WIDER:
+    return scale * 1.2011224f;
   case CONIC_READING_OWN:
   case CONIC_READING_RAW_LIMITED:
   case CONIC_READING_CONJUGATE:
@@ -47,6 +49,7 @@ static float planted_opacity(conic_planted_reading reading, const conic_gaussian
   case CONIC_READING_TWICE:
     return conic_opacity_of_logit(from->opacity[i]);
   case CONIC_READING_OWN:
+  case CONIC_READING_WIDER:
   case CONIC_READING_LENGTH_SQUARED:
   case CONIC_READING_CONJUGATE:
     break;
@@ -220,22 +223,6 @@ static void give_unit_volume(conic_gaussian_footprint *f) {
   f->opacity *= sqrtf(determinant) * 0.15915494f;
 }
 
-/* Changes the form of q, and widens the box by as much. */
-static void change_form(const conic_planted *p, conic_gaussian_footprint *f) {
-  const float factor = p->form_factor > 0.0f ? p->form_factor : 1.0f;
-  const float center[2] = {(float)f->x - f->dx, (float)f->y - f->dy}, wider = 1.0f / sqrtf(factor);
-  const int size[2] = {p->camera.width, p->camera.height};
-  for (int k = 0; k < 3; k++)
-    f->form[k] *= factor;
-  f->form[1] *= p->form_factor > 0.0f ? 1.0f : p->cross_factor;
-  for (int axis = 0; axis < 2; axis++) {
-    const float first = floorf(center[axis] - wider * (center[axis] - (float)f->box[0][axis]) - 1.0f);
-    const float last = ceilf(center[axis] + wider * ((float)f->box[1][axis] - center[axis]) + 1.0f);
-    f->box[0][axis] = (uint16_t)(first > 0.0f ? first : 0.0f);
-    f->box[1][axis] = (uint16_t)(last < (float)size[axis] ? last : (float)(size[axis] - 1));
-  }
-}
-
 static void keep_one(planted_job *j, const conic_gaussians *run, size_t i, size_t first, kept_room *room) {
   const conic_planted *p = j->planted;
   float key;
@@ -251,8 +238,8 @@ static void keep_one(planted_job *j, const conic_gaussians *run, size_t i, size_
       conic_gaussian_set_up(&j->view, run, i, &k->footprint, &key, &k->ray, &k->filter, &k->sight, k->normal);
   if (fate == CONIC_GAUSSIAN_DRAWN && (p->shift_px[0] != 0.0f || p->shift_px[1] != 0.0f))
     grow_box(p, &k->footprint);
-  if (fate == CONIC_GAUSSIAN_DRAWN && (p->form_factor > 0.0f || p->changes_cross))
-    change_form(p, &k->footprint);
+  if (fate == CONIC_GAUSSIAN_DRAWN && p->changes_cross)
+    k->footprint.form[1] *= p->cross_factor;
   if (fate != CONIC_GAUSSIAN_DRAWN || !meets_sample(j, &k->footprint))
     return;
   if (p->has_unit_volume)

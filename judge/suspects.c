@@ -126,6 +126,7 @@ static const suspected of_all[] = {
     {"mirrored-y", OF_MIRROR, 1, {1}, {0.0}},
     {"mirrored-y", OF_CAMERA_MIRROR, 1, {1}, {0.0}},
     {"shifted", OF_MOVE, 8, {-1, 1, 0, 0, -1, 1, -1, 1}, {0.0, 0.0, -1.0, 1.0, -1.0, 1.0, 1.0, -1.0}},
+    {"shifted", OF_CENTER_SHIFT, 8, {-2, 2, 0, 0, -2, 2, -2, 2}, {0.0, 0.0, -2.0, 2.0, -2.0, 2.0, 2.0, -2.0}},
     {"bgr", OF_BGR, 1, {0}, {0.0}},
     {"clipped", OF_CLIP, 1, {0}, {0.0}},
     {"z-not-divided", OF_RAW_Z, 1, {0}, {0.0}},
@@ -248,7 +249,8 @@ static void plant_in_scene(const conic_suspect *s, conic_planted *p) {
     p->takes_translation = 1;
     break;
   case OF_FORM:
-    p->form_factor = (float)s->value;
+    p->scale = CONIC_READING_WIDER; /* of what is wider by √(1/ln 2), e^(-q/2) is 2^(-q/2) */
+    p->rules.dilation /= s->value;
     break;
   case OF_CROSS:
     p->changes_cross = 1;

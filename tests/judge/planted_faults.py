@@ -208,7 +208,7 @@ def main(source, conic, scenes="5", *only):
                 seconds += found["seconds"]["total"]
                 said = [d["name"] for d in found["diagnosis"]]
                 said += [d["kind"] for d in found.get("where", [])]
-                if found["verdict"] == "right":
+                if found["verdict"] != "wrong":
                     kind = "unseen"
                 elif any(word in may.split() for word in said[:1]) or any(
                         d["kind"] in may.split() for d in found.get("where", [])):
