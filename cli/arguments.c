@@ -6,8 +6,10 @@
 #include "cli/command.h"
 #include "cli/host.h"
 #include "cli/option_check.h"
+#include "cli/words.h"
 #include "core/base/nearest_word.h"
 #include "core/files/disk.h"
+#include "core/files/file.h"
 #include "core/formats/text_columns.h"
 
 enum { N_COMMON = 8 };
@@ -261,6 +263,11 @@ static void warn_of_repeated(const cli_session *session, const cli_option *optio
              option->name, value, former);
 }
 
+static int has_option(const void *cookie, const char *name) {
+  const char **value;
+  return find_option(cookie, name, strlen(name), name[1] != '\0', &value) != NULL;
+}
+
 static int refuse_option(const cli_session *session, const option_set *set, const char *argument) {
   char name[64];
   const char *nearest = NULL;
@@ -273,21 +280,38 @@ static int refuse_option(const cli_session *session, const option_set *set, cons
   conic_disk_entry entry;
   if (conic_disk_look(argument, &entry))
     return cli_usage("%s: unknown option %s; the file of that name is ./%s", session->command, argument, argument);
+  const cli_word *word = cli_word_for_option(name, strlen(name), has_option, set);
+  if (word && word->hint)
+    return cli_usage("%s: unknown option %s: %s", session->command, argument, word->hint);
+  if (word)
+    return cli_usage("%s: unknown option %s; did you mean %s%s%s%s?", session->command, argument,
+                     word->is[1] ? "--" : "-", word->is, word->value && *word->value ? " " : "",
+                     word->value ? word->value : "");
   if (nearest)
     return cli_usage("%s: unknown option %s; did you mean --%s?", session->command, argument, nearest);
   return cli_usage("%s: unknown option %s; see conic help %s", session->command, argument, session->command);
 }
 
 /* To be told when all is well. */
-static void note_old(cli_session *session, const cli_option *option) {
+static void note_old(cli_session *session, const cli_option *option, const cli_word *word) {
   const int most = (int)(sizeof session->old_spellings / sizeof *session->old_spellings);
   int i = 0;
   while (i < most && session->old_spellings[i].name)
     i++;
   if (i < most) {
-    session->old_spellings[i].name = option->name;
+    session->old_spellings[i].name = word ? word->said : option->name;
     session->old_spellings[i].now = option->now;
+    session->old_spellings[i].word = word;
   }
+}
+
+/* What somebody else's word stands for here; null: nothing. Of a word after one dash, only a letter, or one with a
+ * number behind it. */
+static const cli_word *find_word(const option_set *set, const char *name, size_t length, int is_long) {
+  if (!is_long && name[1] && !strchr("0123456789", name[1]))
+    return NULL;
+  const cli_word *word = cli_word_for_option(name, length, has_option, set);
+  return word && !word->hint ? word : NULL;
 }
 
 /* Reads the option at argv[*i] and its value, which may be the next argument; *i moves to the last one used. */
@@ -297,12 +321,19 @@ static int parse_option(cli_session *session, const option_set *set, int argc, c
   const char *name = argument + 1 + is_long;
   size_t length = is_long ? strcspn(name, "=") : 1;
   const cli_option *option = find_option(set, name, length, is_long, &former);
+  const cli_word *word = option ? NULL : find_word(set, name, length, is_long);
+  if (word)
+    option = find_option(set, word->is, strlen(word->is), word->is[1] != '\0', &former);
   if (!option)
     return refuse_option(session, set, argument);
   if (name[length])
     value = name + length + is_long; /* behind the equals sign, or a short option's rest */
-  if (option->now && !*former)
-    note_old(session, option);
+  if ((option->now && !*former) || word)
+    note_old(session, option, word);
+  if (word && word->value && value)
+    return cli_usage("%s: %s stands for a value, and takes none", session->command, argument);
+  if (word && word->value)
+    value = *word->value ? word->value : NULL;
   if (option->type == CLI_FLAG) {
     *former = option->name;
     return value ? cli_usage("%s: %s%s takes no value", session->command, cli_dashes(option), option->name)
@@ -408,6 +439,27 @@ static int asks_for(int argc, char **argv, const char *name, const char *letter)
   return 0;
 }
 
+/* An argument at the end of which there is no file, where no -o is given: where the output goes, as of cp. */
+static int take_output(cli_session *session, const option_set *set, int argc, char **argv, const char **positional,
+                       int *n_positional) {
+  const char **former;
+  const cli_option *option = find_option(set, "o", 1, 0, &former);
+  if (!option || *former || session->host || *n_positional < 2)
+    return CLI_DONE;
+  const char *last = positional[*n_positional - 1], *other = positional[*n_positional - 2];
+  const int is_input = *conic_file_ending(other) || strcmp(other, "-") == 0 || strcmp(session->command, "make") == 0;
+  conic_disk_entry entry;
+  if (!is_input || !*conic_file_ending(last) || conic_layers_is_url(last) || conic_disk_look(last, &entry))
+    return CLI_DONE;
+  int i_output = argc - 1;
+  while (argv[i_output] != last)
+    i_output--;
+  cli_mean_command(session, argc, argv, i_output);
+  --*n_positional;
+  *former = last;
+  return store_value(session, option, last);
+}
+
 int cli_parse(cli_session *session, const cli_option *options, int n_options, int argc, char **argv,
               const char **positional, int *n_positional) {
   const char *values[n_options + 1];
@@ -439,6 +491,8 @@ int cli_parse_noting(cli_session *session, const cli_option *options, int n_opti
     else
       exit_code = parse_option(session, &set, argc, argv, &i);
   }
+  if (exit_code == CLI_DONE)
+    exit_code = take_output(session, &set, argc, argv, positional, n_positional);
   for (size_t i = 0; session->host && i < session->host->n_values && exit_code == CLI_DONE; i++)
     exit_code = take_value(session, &set, &session->host->values[i]);
   return exit_code == CLI_DONE ? cli_effects_check_with(session, options, n_options, values, positional, *n_positional)

@@ -1,6 +1,7 @@
 /* All sub-commands, by their names. */
 
 #include "cli/command.h"
+#include "cli/words.h"
 #include "core/base/nearest_word.h"
 
 static const cli_command *const commands[] = {
@@ -24,6 +25,12 @@ const cli_command *cli_command_at(int i) {
 int cli_refuse_command(const char *name) {
   if (strcmp(name, "simulate") == 0) /* a command of earlier builds */
     return cli_usage("simulate is a script of conic's source: scripts/simulate, with the same options");
+  const cli_word *word = cli_word_for_command(name);
+  if (word)
+    return cli_usage("unknown command %s: %s%s", name, word->hint ? word->hint : "conic ",
+                     word->hint  ? ""
+                     : *word->is ? word->is
+                                 : "FILE draws a picture of it");
   int is_option = name[0] == '-';
   const char *kind = is_option ? "option" : "command";
   const char *nearest = conic_nearer_word(name, NULL, is_option ? "--version" : "help");

@@ -35,7 +35,9 @@ typedef struct cli_session {
   int is_help_whole; /* --all: of commands that have a short one */
   struct {
     const char *name, *now;
-  } old_spellings[8]; /* of options that were given, and what they are now; names null: no more */
+    const struct cli_word *word; /* null: it is conic's own spelling of before */
+  } old_spellings[8];            /* of options that were given, and what they are now; names null: no more */
+  char meant[1024];              /* the command in full, where it was given in other words; empty: it was not */
   struct cli_shot_again
       *again;            /* cli/render/shot_again.h: what the arguments that are read draw again; null: nothing */
   struct cli_host *host; /* cli/host.h: what runs the command within itself; null: a shell */
