@@ -141,7 +141,7 @@ int cli_parse_count(const char *text, unsigned long long *value);
 /* Parses a decimal number whole; 0 where it is none. */
 int cli_parse_number(const char *text, double *number);
 
-/* Says, in the message about the value that is being read, what is wrong with it: a static text. Returns 0. */
+/* Says, in the message about the value that is being read, what is wrong with it: a text that stays. Returns 0. */
 int cli_because(const char *reason);
 
 /* Parses "X,Y,Z" whole; 0 where it is not, or of a direction is 0. */

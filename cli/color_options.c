@@ -3,7 +3,8 @@
 #include "core/base/nearest_word.h"
 
 const char *const cli_color_words[] = {"auto", "rgb", "intensity", "height", "classification", "normal", NULL};
-const char *const cli_ramp_words[] = {"sequential", "grey", "heat", "diverging", "terrain", "classes", NULL};
+const char *const cli_ramp_words[] = {"sequential", "grey",  "heat",  "diverging", "terrain",
+                                      "viridis",    "magma", "turbo", "classes",   NULL};
 
 int cli_parse_color_range(const char *text, void *value) {
   conic_coloring_options *coloring = value;
@@ -30,14 +31,16 @@ int cli_parse_ramp(const char *text, void *value) {
 }
 
 static int check_ramp(const cli_session *session, const char *ramp) {
+  char names[128] = "";
   const char *nearest = NULL, *name;
   for (int i = 0; (name = conic_ramp_name(i)); i++) {
     if (strcmp(name, ramp) == 0)
       return CLI_DONE;
+    snprintf(names + strlen(names), sizeof names - strlen(names), "%s%s", i ? ", " : "", name);
     nearest = conic_nearer_word(ramp, nearest, name);
   }
-  return cli_usage("%s: there is no ramp '%s'%s%s%s", session->command, ramp, nearest ? "; did you mean '" : "",
-                   nearest ? nearest : "", nearest ? "'?" : "");
+  return cli_usage("%s: there is no ramp '%s'%s%s%s; there are %s", session->command, ramp,
+                   nearest ? " (did you mean '" : "", nearest ? nearest : "", nearest ? "'?)" : "", names);
 }
 
 int cli_color_check(const cli_session *session, conic_coloring_options *coloring, int is_auto) {

@@ -23,8 +23,8 @@ extern const char *const cli_color_words[], *const cli_ramp_words[]; /* for comp
        CLI_PARSED,                                                                                                     \
        (coloring),                                                                                                     \
        "NAME:A,B",                                                                                                     \
-       "the colours of --color-by: sequential, grey, heat, diverging, terrain or classes; the values at its two ends " \
-       "behind it, or alone [what suits, from the 2nd to the 98th percentile]",                                        \
+       "the colours of --color-by: sequential, grey, heat, diverging, terrain, viridis, magma, turbo or classes; the " \
+       "values at its two ends behind it, or alone [what suits, from the 2nd to the 98th percentile]",                 \
        .choices = cli_ramp_words,                                                                                      \
        .parse = cli_parse_ramp,                                                                                        \
        .acts = {.on = CLI_FACT(VALUED)}},                                                                              \

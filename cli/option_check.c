@@ -35,7 +35,8 @@ static const struct {
     [CLI_FACT_WAY] = {"way", "a way of the camera, --turntable or --camera with several, or --motion"},
     [CLI_FACT_FRAMED] = {"framed", "a camera that frames the scene, and --camera does it itself"},
     [CLI_FACT_FIELD] = {"field", "--projection perspective or fisheye"},
-    [CLI_FACT_CAMERAS] = {"cameras", "a file of cameras, by --camera FILE"},
+    [CLI_FACT_CAMERAS] =
+        {"cameras", "a file of cameras, by --camera FILE, or a side as front, back, left, right, top, bottom or iso"},
     [CLI_FACT_UPRIGHT] = {"upright", "lights, heights or a framed camera that stand upright"},
     [CLI_FACT_TURNTABLE] = {"turntable", "--turntable N"},
     [CLI_FACT_EVERY_VIEW] = {"views", "--view all"},

@@ -29,7 +29,7 @@ enum cli_fact {
   CLI_FACT_WAY,     /* of the camera or the scene, while the shutter is open */
   CLI_FACT_FRAMED,  /* by the options, and not by a camera of a file */
   CLI_FACT_FIELD,   /* of view, which the projection has */
-  CLI_FACT_CAMERAS, /* of a file */
+  CLI_FACT_CAMERAS, /* of a file, or the scene's sides by their names */
   CLI_FACT_UPRIGHT, /* it matters what points up */
   CLI_FACT_TURNTABLE,
   CLI_FACT_EVERY_VIEW,

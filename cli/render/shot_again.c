@@ -171,7 +171,7 @@ static int find_again_inputs(cli_shot_again *again, const cli_render_job *first)
 
 /* Inputs that were given say where its own are, and nothing else. */
 static int check_given(const cli_shot_again *again, const cli_render_job *first) {
-  if (first->view_name && !first->camera_path)
+  if (first->view_name && !first->camera_path && !first->is_view_side)
     return cli_usage("render: --view is of a file of cameras, and a shot has one; give --camera, too");
   for (int i = 0; i < first->n_inputs; i++) {
     int is_named = strcmp(first->inputs[i], again->path) == 0;
@@ -221,7 +221,7 @@ int cli_shot_again_parse(cli_session *session, int argc, char **argv, cli_render
   if (answer == CLI_DONE)
     answer = find_again_inputs(again, &first);
   if (answer == CLI_DONE) {
-    int is_reframed = gives_one(again, framing_options);
+    int is_reframed = gives_one(again, framing_options) || first.is_view_side;
     again->has_camera =
         again->file->shot.camera.width && !again->file->map.is_wanted && !is_reframed && !gives(again, "camera");
     if (is_reframed && !again->file->map.is_wanted && !gives(again, "camera"))

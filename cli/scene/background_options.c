@@ -14,7 +14,7 @@ int cli_parse_background(const char *text, void *value) {
   size_t length = strcspn(text, ":");
   job->is_background_given = 1;
   options->has_background = job->shot.has_backdrop = 0;
-  if (strcmp(text, "none") == 0)
+  if (strcmp(text, "none") == 0 || strcmp(text, "transparent") == 0)
     return 1;
   if (text[length]) {
     job->shot.has_backdrop = 1;

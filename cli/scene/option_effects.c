@@ -183,10 +183,10 @@ static cli_facts ask_of_camera(const cli_render_job *job) {
   const cli_accumulate_job *sums = &job->accumulating;
   int is_map = job->top.is_wanted, is_framed = !job->camera_path && !is_map, kind = job->projection;
   return when(is_framed, F(FRAMED)) | when(kind == CONIC_CAMERA_PERSPECTIVE || kind == CONIC_CAMERA_FISHEYE, F(FIELD)) |
-         when(job->camera_path != NULL, F(CAMERAS)) | when(is_map, F(MAP)) | when(job->is_turntable, F(TURNTABLE)) |
-         when(job->is_every_view, F(EVERY_VIEW)) | when(job->stereo.distance > 0.0, F(STEREO)) |
-         when(sums->n_samples > 0, F(ACCUMULATED)) | when(sums->is_sample_given, F(SAMPLE)) |
-         when(sums->width.value > 0.0, F(LENS)) |
+         when(job->camera_path || job->is_view_side, F(CAMERAS)) | when(is_map, F(MAP)) |
+         when(job->is_turntable, F(TURNTABLE)) | when(job->is_every_view, F(EVERY_VIEW)) |
+         when(job->stereo.distance > 0.0, F(STEREO)) | when(sums->n_samples > 0, F(ACCUMULATED)) |
+         when(sums->is_sample_given, F(SAMPLE)) | when(sums->width.value > 0.0, F(LENS)) |
          when(job->is_turntable || job->camera_path || sums->motion_path, F(WAY)) |
          when(kind != CONIC_CAMERA_PERSPECTIVE, F(PROJECTED)) | when(kind == CONIC_CAMERA_CUBE, F(CUBE)) |
          when((kind == CONIC_CAMERA_FISHEYE || kind == CONIC_CAMERA_EQUIRECTANGULAR) &&

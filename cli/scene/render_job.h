@@ -50,6 +50,7 @@ typedef struct cli_render_job {
   const char *progressive_path; /* --progressive; null: none */
   const char *camera_path;      /* null: framed */
   const char *view_name;        /* --view; null: the file's only one */
+  int is_view_side;             /* it named a side of the scene, and the framing is of that */
   int camera_size[2];           /* that the file's cameras are brought to; 0: the file's */
   int is_every_view;            /* --view all: each is a frame */
   conic_cameras cameras;        /* the file's */

@@ -62,6 +62,30 @@ static int parse_color_error(const char *text, void *value) {
   return cli_parse_number(text, steps) && *steps >= 0.01 && *steps <= 1000.0;
 }
 
+/* Sides of a framed scene, which azimuth and elevation then say; else which of a file's cameras. */
+static int parse_view(const char *text, void *value) {
+  static const struct {
+    const char *name;
+    double azimuth_deg, elevation_deg;
+  } sides[] = {{"front", 0, 0},
+               {"right", 90, 0},
+               {"back", 180, 0},
+               {"left", 270, 0},
+               {"top", 0, 90},
+               {"bottom", 0, -90},
+               {"iso", 45, 35.264389682754654}};
+  cli_render_job *job = value;
+  job->view_name = text;
+  job->is_view_side = 0;
+  for (size_t i = 0; i < sizeof sides / sizeof *sides; i++)
+    if (strcmp(sides[i].name, text) == 0) {
+      job->is_view_side = job->is_elevation_given = 1;
+      job->framing.azimuth_deg = sides[i].azimuth_deg;
+      job->framing.elevation_deg = sides[i].elevation_deg;
+    }
+  return *text != '\0';
+}
+
 static int parse_ignore_center(const char *text, void *value) {
   return *(int *)value = strcmp(text, "ignore-center") == 0;
 }
@@ -167,10 +191,10 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "a pixel is wide behind it, top:0.1, or else their typical distance, and the EPSG code that a .tif notes, "
        "top:0.1:25832, or else the file's",
        .is_usual = 1},
-      {"view", CLI_TEXT, &job->view_name, "VIEW",
+      {"view", CLI_PARSED, job, "VIEW",
        "which of the cameras of --camera: a number from 0, the name of an image with or without its folder and ending, "
-       "or all [the only one]",
-       .is_usual = 1, .acts = {.needs = CLI_FACT(CAMERAS), .apart = CLI_FACT(MAP)}},
+       "or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso, from a corner",
+       .parse = parse_view, .is_usual = 1, .acts = {.needs = CLI_FACT(CAMERAS), .apart = CLI_FACT(MAP)}},
       {"azimuth", CLI_NUMBER, &view->azimuth_deg, "DEG",
        "the camera's place around the scene: 0 in front, 90 to the right of that [30]", -1e6, 1e6, .is_usual = 1,
        .acts = {.needs = CLI_FACT(FRAMED)}},
@@ -292,8 +316,9 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "so much of each colour, 0 to 1, is the picture of --sky as a smooth surface mirrors it; nothing hides it [0]",
        0, 1, .acts = {.on = CLI_SURFACES, .needs = CLI_FACT(LIT)}},
       {"background", CLI_PARSED, job, "R,G,B[:R,G,B]",
-       "linear colour behind the scene, or two from top to bottom, or none: transparent [dark greys in PNG and JPEG, "
-       "else none]",
+       "linear colour behind the scene, a name as white, or #rrggbb; two go from top to bottom; none: transparent "
+       "[dark "
+       "greys in PNG and JPEG, else none]",
        .parse = cli_parse_background, .is_usual = 1},
       {"exposure", CLI_PARSED, job, "EV",
        "stops, -100 to 100: each doubles the brightness; auto: as bright as leaves 1 pixel in 20 near white [0]",
@@ -340,6 +365,9 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   int answer = parse_all(session, own, n_own, table, (int)(sizeof table / sizeof table[0]), argc, argv, job);
   if (answer != CLI_DONE)
     return answer;
+  job->is_view_side &= !job->camera_path;
+  if (job->is_view_side)
+    job->view_name = NULL;
   choose_quality(&raw, job);
   if (cli_scene_is_top(job) && !raw.is_samples_given && !raw.is_quality_given)
     job->shot.view.samples = 1; /* that is drawn in bounded memory, and pixels are filtered anyway */

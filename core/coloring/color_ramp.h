@@ -10,8 +10,11 @@ typedef enum conic_ramp {
   CONIC_RAMP_HEAT = 2,      /* black to yellow through red */
   CONIC_RAMP_DIVERGING = 3, /* blue to red through white */
   CONIC_RAMP_TERRAIN = 4,   /* green to white through brown */
-  CONIC_RAMP_CLASSES = 5,   /* no ramp: a colour for each whole number, as in LAS (ASPRS) up to 22 */
-  CONIC_N_RAMPS = 6
+  CONIC_RAMP_VIRIDIS = 5,   /* as others have them: */
+  CONIC_RAMP_MAGMA = 6,
+  CONIC_RAMP_TURBO = 7,
+  CONIC_RAMP_CLASSES = 8, /* no ramp: a colour for each whole number, as in LAS (ASPRS) up to 22 */
+  CONIC_N_RAMPS = 9
 } conic_ramp;
 
 /* At t from 0 to 1; beyond, the nearer end's colour. Not for classes. */

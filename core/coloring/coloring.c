@@ -5,7 +5,8 @@
 #include "core/splats/columns.h"
 #include "core/splats/point_fields.h"
 
-static const char *const ramp_names[CONIC_N_RAMPS] = {"sequential", "grey", "heat", "diverging", "terrain", "classes"};
+static const char *const ramp_names[CONIC_N_RAMPS] = {"sequential", "grey",  "heat",  "diverging", "terrain",
+                                                      "viridis",    "magma", "turbo", "classes"};
 
 /* What `by` says, if it is not "rgb". */
 typedef enum coloring_kind { BY_VALUE, BY_HEIGHT, BY_NORMAL } coloring_kind;

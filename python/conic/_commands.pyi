@@ -178,7 +178,8 @@ def render(
         the points that a pixel is wide behind it, top:0.1, or else their typical distance, and the EPSG code
         that a .tif notes, top:0.1:25832, or else the file's
     view: which of the cameras of --camera: a number from 0, the name of an image with or without its folder and
-        ending, or all [the only one]
+        ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
+        from a corner
     azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
     elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat]
     fov: field of view across the shorter side [40]
@@ -197,8 +198,9 @@ def render(
         flat; all: any triangles look smooth everywhere, by the mean normal of the faces about each vertex [30]
     color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value
         in the file by its name; auto: rgb, or else intensity [auto]
-    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain or classes; the values at its
-        two ends behind it, or alone [what suits, from the 2nd to the 98th percentile]
+    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain, viridis, magma, turbo or
+        classes; the values at its two ends behind it, or alone [what suits, from the 2nd to the 98th
+        percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
     error: draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a
@@ -241,8 +243,8 @@ def render(
         [the studio's]; or a picture of all directions, such as sky.exr or sky.pfm, which needs --ao
     reflect: so much of each colour, 0 to 1, is the picture of --sky as a smooth surface mirrors it; nothing
         hides it [0]
-    background: linear colour behind the scene, or two from top to bottom, or none: transparent [dark greys in
-        PNG and JPEG, else none]
+    background: linear colour behind the scene, a name as white, or #rrggbb; two go from top to bottom; none:
+        transparent [dark greys in PNG and JPEG, else none]
     exposure: stops, -100 to 100: each doubles the brightness; auto: as bright as leaves 1 pixel in 20 near
         white [0]
     planes: planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place
@@ -284,7 +286,7 @@ def verify(
     frames: Optional[Union[str, float, Sequence[float]]] = None,
     accumulate: Optional[Union[int, str]] = None,
     size: Optional[Union[str, Sequence[int]]] = None,
-    view: Optional[PathLike] = None,
+    view: Optional[Union[str, float, Sequence[float]]] = None,
     azimuth: Optional[float] = None,
     elevation: Optional[float] = None,
     fov: Optional[float] = None,
@@ -360,7 +362,8 @@ def verify(
         the points that a pixel is wide behind it, top:0.1, or else their typical distance, and the EPSG code
         that a .tif notes, top:0.1:25832, or else the file's
     view: which of the cameras of --camera: a number from 0, the name of an image with or without its folder and
-        ending, or all [the only one]
+        ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
+        from a corner
     azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
     elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat]
     fov: field of view across the shorter side [40]
@@ -379,8 +382,9 @@ def verify(
         flat; all: any triangles look smooth everywhere, by the mean normal of the faces about each vertex [30]
     color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value
         in the file by its name; auto: rgb, or else intensity [auto]
-    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain or classes; the values at its
-        two ends behind it, or alone [what suits, from the 2nd to the 98th percentile]
+    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain, viridis, magma, turbo or
+        classes; the values at its two ends behind it, or alone [what suits, from the 2nd to the 98th
+        percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
     error: draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a
@@ -423,8 +427,8 @@ def verify(
         [the studio's]; or a picture of all directions, such as sky.exr or sky.pfm, which needs --ao
     reflect: so much of each colour, 0 to 1, is the picture of --sky as a smooth surface mirrors it; nothing
         hides it [0]
-    background: linear colour behind the scene, or two from top to bottom, or none: transparent [dark greys in
-        PNG and JPEG, else none]
+    background: linear colour behind the scene, a name as white, or #rrggbb; two go from top to bottom; none:
+        transparent [dark greys in PNG and JPEG, else none]
     exposure: stops, -100 to 100: each doubles the brightness; auto: as bright as leaves 1 pixel in 20 near
         white [0]
     planes: planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place
@@ -475,7 +479,7 @@ def judge(
     weights: Optional[PathLike] = None,
     raw: Optional[bool] = None,
     size: Optional[Union[str, Sequence[int]]] = None,
-    view: Optional[PathLike] = None,
+    view: Optional[Union[str, float, Sequence[float]]] = None,
     azimuth: Optional[float] = None,
     elevation: Optional[float] = None,
     fov: Optional[float] = None,
@@ -560,7 +564,8 @@ def judge(
         the points that a pixel is wide behind it, top:0.1, or else their typical distance, and the EPSG code
         that a .tif notes, top:0.1:25832, or else the file's
     view: which of the cameras of --camera: a number from 0, the name of an image with or without its folder and
-        ending, or all [the only one]
+        ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
+        from a corner
     azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
     elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat]
     fov: field of view across the shorter side [40]
@@ -579,8 +584,9 @@ def judge(
         flat; all: any triangles look smooth everywhere, by the mean normal of the faces about each vertex [30]
     color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value
         in the file by its name; auto: rgb, or else intensity [auto]
-    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain or classes; the values at its
-        two ends behind it, or alone [what suits, from the 2nd to the 98th percentile]
+    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain, viridis, magma, turbo or
+        classes; the values at its two ends behind it, or alone [what suits, from the 2nd to the 98th
+        percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
     error: draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a
@@ -623,8 +629,8 @@ def judge(
         [the studio's]; or a picture of all directions, such as sky.exr or sky.pfm, which needs --ao
     reflect: so much of each colour, 0 to 1, is the picture of --sky as a smooth surface mirrors it; nothing
         hides it [0]
-    background: linear colour behind the scene, or two from top to bottom, or none: transparent [dark greys in
-        PNG and JPEG, else none]
+    background: linear colour behind the scene, a name as white, or #rrggbb; two go from top to bottom; none:
+        transparent [dark greys in PNG and JPEG, else none]
     exposure: stops, -100 to 100: each doubles the brightness; auto: as bright as leaves 1 pixel in 20 near
         white [0]
     planes: planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place
@@ -665,7 +671,7 @@ def explain(
     turntable: Optional[Union[str, float, Sequence[float]]] = None,
     frames: Optional[Union[str, float, Sequence[float]]] = None,
     size: Optional[Union[str, Sequence[int]]] = None,
-    view: Optional[PathLike] = None,
+    view: Optional[Union[str, float, Sequence[float]]] = None,
     azimuth: Optional[float] = None,
     elevation: Optional[float] = None,
     fov: Optional[float] = None,
@@ -737,7 +743,8 @@ def explain(
         the points that a pixel is wide behind it, top:0.1, or else their typical distance, and the EPSG code
         that a .tif notes, top:0.1:25832, or else the file's
     view: which of the cameras of --camera: a number from 0, the name of an image with or without its folder and
-        ending, or all [the only one]
+        ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
+        from a corner
     azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
     elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat]
     fov: field of view across the shorter side [40]
@@ -756,8 +763,9 @@ def explain(
         flat; all: any triangles look smooth everywhere, by the mean normal of the faces about each vertex [30]
     color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value
         in the file by its name; auto: rgb, or else intensity [auto]
-    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain or classes; the values at its
-        two ends behind it, or alone [what suits, from the 2nd to the 98th percentile]
+    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain, viridis, magma, turbo or
+        classes; the values at its two ends behind it, or alone [what suits, from the 2nd to the 98th
+        percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
     error: draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a
@@ -800,8 +808,8 @@ def explain(
         [the studio's]; or a picture of all directions, such as sky.exr or sky.pfm, which needs --ao
     reflect: so much of each colour, 0 to 1, is the picture of --sky as a smooth surface mirrors it; nothing
         hides it [0]
-    background: linear colour behind the scene, or two from top to bottom, or none: transparent [dark greys in
-        PNG and JPEG, else none]
+    background: linear colour behind the scene, a name as white, or #rrggbb; two go from top to bottom; none:
+        transparent [dark greys in PNG and JPEG, else none]
     exposure: stops, -100 to 100: each doubles the brightness; auto: as bright as leaves 1 pixel in 20 near
         white [0]
     planes: planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place
@@ -995,8 +1003,9 @@ def prepare(
     directions: of --bake: from so many directions [256]
     color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value
         in the file by its name; auto: rgb, or else intensity [auto]
-    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain or classes; the values at its
-        two ends behind it, or alone [what suits, from the 2nd to the 98th percentile]
+    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain, viridis, magma, turbo or
+        classes; the values at its two ends behind it, or alone [what suits, from the 2nd to the 98th
+        percentile]
     up: what points up, for --color-by height and in a .lpc: x, y, z, -x … or X,Y,Z [y; z for surveys]
     threads: how many threads compute; the results never depend on it [0: all]
     """
@@ -1035,8 +1044,9 @@ def octree(
         [all]
     color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value
         in the file by its name; auto: rgb, or else intensity [auto]
-    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain or classes; the values at its
-        two ends behind it, or alone [what suits, from the 2nd to the 98th percentile]
+    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain, viridis, magma, turbo or
+        classes; the values at its two ends behind it, or alone [what suits, from the 2nd to the 98th
+        percentile]
     up: what points up, for --color-by height and in a .lpc: x, y, z, -x … or X,Y,Z [y; z for surveys]
     threads: how many threads compute; the results never depend on it [0: all]
     """
@@ -1092,8 +1102,9 @@ def layers(
     allow_outside: a glTF may name buffers and pictures outside of its folder
     color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value
         in the file by its name; auto: rgb, or else intensity [auto]
-    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain or classes; the values at its
-        two ends behind it, or alone [what suits, from the 2nd to the 98th percentile]
+    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain, viridis, magma, turbo or
+        classes; the values at its two ends behind it, or alone [what suits, from the 2nd to the 98th
+        percentile]
     up: what points up, for --color-by height and in a .lpc: x, y, z, -x … or X,Y,Z [y; z for surveys]
     threads: how many threads compute; the results never depend on it [0: all]
     """
@@ -1245,8 +1256,9 @@ def hybrid(
     single: without the simpler levels that --error chooses from
     color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value
         in the file by its name; auto: rgb, or else intensity [auto]
-    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain or classes; the values at its
-        two ends behind it, or alone [what suits, from the 2nd to the 98th percentile]
+    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain, viridis, magma, turbo or
+        classes; the values at its two ends behind it, or alone [what suits, from the 2nd to the 98th
+        percentile]
     up: what points up, for --color-by height and in a .lpc: x, y, z, -x … or X,Y,Z [y; z for surveys]
     threads: how many threads compute; the results never depend on it [0: all]
     """
@@ -1298,7 +1310,7 @@ def gradient(
     floats: Optional[Literal["own", "strict", "fast"]] = None,
     no_doubts: Optional[bool] = None,
     size: Optional[Union[str, Sequence[int]]] = None,
-    view: Optional[PathLike] = None,
+    view: Optional[Union[str, float, Sequence[float]]] = None,
     azimuth: Optional[float] = None,
     elevation: Optional[float] = None,
     fov: Optional[float] = None,
@@ -1363,7 +1375,8 @@ def gradient(
         the points that a pixel is wide behind it, top:0.1, or else their typical distance, and the EPSG code
         that a .tif notes, top:0.1:25832, or else the file's
     view: which of the cameras of --camera: a number from 0, the name of an image with or without its folder and
-        ending, or all [the only one]
+        ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
+        from a corner
     azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
     elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat]
     fov: field of view across the shorter side [40]
@@ -1382,8 +1395,9 @@ def gradient(
         flat; all: any triangles look smooth everywhere, by the mean normal of the faces about each vertex [30]
     color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value
         in the file by its name; auto: rgb, or else intensity [auto]
-    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain or classes; the values at its
-        two ends behind it, or alone [what suits, from the 2nd to the 98th percentile]
+    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain, viridis, magma, turbo or
+        classes; the values at its two ends behind it, or alone [what suits, from the 2nd to the 98th
+        percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
     error: draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a
@@ -1426,8 +1440,8 @@ def gradient(
         [the studio's]; or a picture of all directions, such as sky.exr or sky.pfm, which needs --ao
     reflect: so much of each colour, 0 to 1, is the picture of --sky as a smooth surface mirrors it; nothing
         hides it [0]
-    background: linear colour behind the scene, or two from top to bottom, or none: transparent [dark greys in
-        PNG and JPEG, else none]
+    background: linear colour behind the scene, a name as white, or #rrggbb; two go from top to bottom; none:
+        transparent [dark greys in PNG and JPEG, else none]
     exposure: stops, -100 to 100: each doubles the brightness; auto: as bright as leaves 1 pixel in 20 near
         white [0]
     planes: planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place

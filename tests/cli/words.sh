@@ -148,8 +148,41 @@ done << 'END'
 0|render: --max-splats means --budget|render s.ply -o a.png -s 16x16 --max-splats 100
 0|mls: --n-points means --count|mls thin points.xyz -o a.ply --n-points 6
 1|diff: --tolerance means --max-abs|diff r.png turn.0002.png --tolerance 0.0001
+0||render s.ply -o front.pfm --size 32x32 --view front
+0||render s.ply -o same.pfm --size 32x32 --azimuth 0 --elevation 0
+0||diff front.pfm same.pfm
+0||render s.ply -o left.pfm --size 32x32 --view left
+0||render s.ply -o same.pfm --size 32x32 --azimuth 270 --elevation 0
+0||diff left.pfm same.pfm
+0||render s.ply -o same.pfm --size 32x32 --azimuth 9 --view left
+0||diff left.pfm same.pfm
+0||render s.ply -o iso.png --size 32x32 --view iso
+0|framed anew|render --again iso.png --view top -o same.png
+0||render s.ply -o top.png --size 32x32 --view top
+0||diff top.png same.png
+1||diff top.png iso.png
+2|front, back, left, right, top, bottom or iso|render s.ply -o a.png --view frnt
+2|front, back, left, right, top, bottom or iso|render s.ply -o a.png --view 3
+0||render s.ply -o white.pfm --size 32x32 --background white
+0||render s.ply -o same.pfm --size 32x32 --background #fff
+0||diff white.pfm same.pfm
+0||render s.ply -o same.pfm --size 32x32 --background 1,1,1
+0||diff white.pfm same.pfm
+0||render s.ply -o same.pfm --size 32x32 --background #ffffff:white
+0||render s.ply -o lit.pfm --size 32x32 --light 1,1,1:orange --sky skyblue:#204010
+0||render s.ply -o same.pfm --size 32x32 --light 1,1,1:#ffa500 --sky #87ceeb:#204010
+0||diff lit.pfm same.pfm
+2|as codes from 0 to 255 it is #ff8000|render s.ply -o a.png --background 255,128,0
+2|as codes from 0 to 255 it is #ff8000|render s.ply -o a.png --light 1,1,1:255,128,0
+2|a name as white, or #rrggbb|render s.ply -o a.png --background puce
+2|a name as white, or #rrggbb|render s.ply -o a.png --background #12345
+0||render points.xyz -o a.png --size 16x16 --color-by height --ramp viridis
+0||render points.xyz -o a.png --size 16x16 --color-by height --ramp magma:0,1
+0||render points.xyz -o a.png --size 16x16 --color-by height --ramp turbo
+2|did you mean 'viridis'?); there are sequential, grey, heat|render points.xyz -o a.png --color-by height --ramp virids
+2|there are sequential, grey, heat, diverging, terrain, viridis, magma, turbo, classes|render s.ply -o a.png --ramp list
 END
-[[ $n_commands -ge 110 ]] || fail "only $n_commands commands were read"
+[[ $n_commands -ge 150 ]] || fail "only $n_commands commands were read"
 
 # What words stand for is what is drawn.
 run_as_typed 0 render s.ply -o plain.pfm --size 32x32 --projection orthographic --background none
