@@ -293,13 +293,13 @@ static int refuse_option(const cli_session *session, const option_set *set, cons
 }
 
 /* To be told when all is well. */
-static void note_old(cli_session *session, const cli_option *option, const cli_word *word) {
+static void note_old(cli_session *session, const cli_option *option, const cli_word *word, const char *argument) {
   const int most = (int)(sizeof session->old_spellings / sizeof *session->old_spellings);
   int i = 0;
   while (i < most && session->old_spellings[i].name)
     i++;
   if (i < most) {
-    session->old_spellings[i].name = word ? word->said : option->name;
+    session->old_spellings[i].name = word ? argument : option->name;
     session->old_spellings[i].now = option->now;
     session->old_spellings[i].word = word;
   }
@@ -329,7 +329,7 @@ static int parse_option(cli_session *session, const option_set *set, int argc, c
   if (name[length])
     value = name + length + is_long; /* behind the equals sign, or a short option's rest */
   if ((option->now && !*former) || word)
-    note_old(session, option, word);
+    note_old(session, option, word, argument);
   if (word && word->value && value)
     return cli_usage("%s: %s stands for a value, and takes none", session->command, argument);
   if (word && word->value)

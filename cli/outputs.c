@@ -81,9 +81,25 @@ static const char *stands_for(const char *path, const char *standard) {
   return strcmp(path, "-") == 0 ? standard : path;
 }
 
+/* Of a URL, what is read only as a whole, and only from a file. */
+static int is_for_disk(const char *name) {
+  static const char *const whole[] = {"ply",  "obj", "stl", "off", "xyz", "pts",   "csv", "las", "pcd", "e57", "ptx",
+                                      "gltf", "glb", "3mf", "dae", "fbx", "splat", "spz", "sog", "png", "exr", "jpg"};
+  for (size_t i = 0; conic_layers_is_url(name) && i < sizeof whole / sizeof *whole; i++)
+    if (strcasecmp(conic_file_ending(name), whole[i]) == 0)
+      return 1;
+  return 0;
+}
+
 int cli_check_inputs_stay(const cli_session *session, const char *const *inputs, int n_inputs,
                           const char *const *outputs, int n_outputs) {
   for (int i = 0; i < n_inputs; i++) {
+    if (inputs[i] && is_for_disk(inputs[i]))
+      return cli_error(
+          CLI_INPUT,
+          "%s: such a file is not read over the web; download it first (what is: .lpc, .chy, COPC, EPT and "
+          "Potree 2)",
+          inputs[i]);
     for (int j = 0; j <= n_outputs; j++) {
       const char *output = j < n_outputs ? outputs[j] : session->json_path;
       if (inputs[i] && output && is_same_file(stands_for(inputs[i], "/dev/stdin"), stands_for(output, "/dev/stdout")))

@@ -28,7 +28,7 @@ static void tell_words(const cli_session *session) {
     const char *name = session->old_spellings[i].name;
     const cli_word *word = session->old_spellings[i].word;
     if (word)
-      cli_note(session, "%s: %s%s means %s%s%s%s", session->command, name[1] ? "--" : "-", name,
+      cli_note(session, "%s: %.*s means %s%s%s%s", session->command, name[1] == '-' ? (int)strcspn(name, "=") : 2, name,
                word->is[1] ? "--" : "-", word->is, word->value && *word->value ? " " : "",
                word->value ? word->value : "");
     else

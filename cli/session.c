@@ -248,6 +248,7 @@ static int is_said_again(cli_session *session, const char *message) {
 }
 
 static void on_log(void *cookie, conic_log_level level, const char *message) {
+  static const char cancelled[] = ": cancelled";
   cli_session *session = cookie;
   if (level == CONIC_LOG_WARNING && is_said_again(session, message))
     return;
@@ -261,10 +262,15 @@ static void on_log(void *cookie, conic_log_level level, const char *message) {
     return;
   if (holds && holds(level, message))
     return;
+  const size_t n = strlen(message), n_end = sizeof cancelled - 1;
+  const int is_end = level == CONIC_LOG_ERROR && n > n_end && strcmp(message + n - n_end, cancelled) == 0;
   const char *label = level == CONIC_LOG_ERROR ? "error: " : level == CONIC_LOG_WARNING ? "warning: " : "";
   pthread_mutex_lock(&screen);
   erase_bar();
-  fprintf(stderr, "conic: %s%s\n", label, message);
+  if (is_end) /* of a part, whose name says nothing to who typed the command */
+    fprintf(stderr, "conic: %s%s%s\n", label, session->command, cancelled);
+  else
+    fprintf(stderr, "conic: %s%s\n", label, message);
   pthread_mutex_unlock(&screen);
 }
 

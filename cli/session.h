@@ -35,7 +35,7 @@ typedef struct cli_session {
   int is_help_whole; /* --all: of commands that have a short one */
   struct {
     const char *name, *now;
-    const struct cli_word *word; /* null: it is conic's own spelling of before */
+    const struct cli_word *word; /* which the argument `name` is one of; null: it is conic's own spelling of before */
   } old_spellings[8];            /* of options that were given, and what they are now; names null: no more */
   char meant[1024];              /* the command in full, where it was given in other words; empty: it was not */
   struct cli_shot_again

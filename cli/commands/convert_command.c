@@ -1,9 +1,12 @@
 /* conic convert: writes a Gaussian scene in another format, and says what was lost. */
 
+#include <strings.h>
+
 #include "cli/command.h"
 #include "cli/commands/build_steps.h"
 #include "cli/outputs.h"
 #include "core/files/disk.h"
+#include "core/files/file.h"
 
 typedef struct convert_job {
   cli_build base;
@@ -247,6 +250,14 @@ static void release_scenes(void *cookie) {
   conic_gaussians_release(job->base.session->context, &job->written);
 }
 
+static int holds_points(const char *path) {
+  static const char *const endings[] = {"las", "laz", "xyz", "pts", "csv", "pcd", "e57", "ptx", "txt"};
+  for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
+    if (strcasecmp(conic_file_ending(path), endings[i]) == 0)
+      return 1;
+  return 0;
+}
+
 static int check_paths(convert_job *job, const char *const *inputs, int n_inputs) {
   cli_session *session = job->base.session;
   if (n_inputs != 1)
@@ -264,6 +275,12 @@ static int check_paths(convert_job *job, const char *const *inputs, int n_inputs
         "or say --to KIND",
         job->base.output);
   job->write.sh_bits[0] = job->write.sh_bits[1] = job->sh_bits;
+  if (holds_points(inputs[0]))
+    return cli_error(
+        CLI_INPUT,
+        "%s: convert is of Gaussian scenes; conic prepare %s -o OUT.ply writes points as splats, with normals "
+        "and sizes",
+        inputs[0], inputs[0]);
   int exit_code = cli_check_outputs(session, &job->base.output, 1);
   return exit_code == CLI_DONE ? cli_check_inputs_stay(session, inputs, 1, &job->base.output, 1) : exit_code;
 }

@@ -12,6 +12,7 @@
 typedef struct info_job {
   const char *path;
   int is_check;
+  int is_read;
   int has_bytes;
   uint64_t bytes;
   int is_cameras, size[2]; /* is_cameras: --cameras, or the file has only cameras; size: of their pictures, by --size */
@@ -21,27 +22,28 @@ typedef struct info_job {
   size_t n_wrong_samples;
 } info_job;
 
-static int parse(cli_session *session, int argc, char **argv, info_job *job) {
+typedef struct info_files {
+  info_job *jobs;
+  int n;
+} info_files;
+
+static int parse(cli_session *session, int argc, char **argv, info_job *job, const char **paths, int *n_paths) {
   const cli_option options[] = {
       {"check", CLI_FLAG, &job->is_check, NULL, "also look for what cannot be drawn"},
       {"cameras", CLI_FLAG, &job->is_cameras, NULL, "of a glTF, the cameras in it, as of files of cameras alone"},
       {"size", CLI_SIZE, job->size, "WxH", "of cameras: pixels [the file's]", 1, 65535},
       CLI_OUTSIDE(session),
   };
-  const char *positional[64] = {NULL};
-  int n_positional = 0;
-  if (argc > (int)(sizeof positional / sizeof *positional))
-    return cli_usage("info: too many arguments");
-  int exit_code = cli_parse(session, options, sizeof options / sizeof *options, argc, argv, positional, &n_positional);
+  int exit_code = cli_parse(session, options, sizeof options / sizeof *options, argc, argv, paths, n_paths);
   if (exit_code != CLI_DONE)
     return exit_code;
-  if (n_positional != 1)
-    return cli_usage("info: one file is needed; see conic help info");
-  job->path = positional[0];
-  if (conic_layers_is_url(job->path))
-    return cli_usage("info: %s is on a web server; it takes a file", job->path);
+  if (*n_paths == 0)
+    return cli_usage("info: a file is needed; see conic help info");
+  for (int i = 0; i < *n_paths; i++)
+    if (conic_layers_is_url(paths[i]))
+      return cli_usage("info: %s is on a web server; it takes a file", paths[i]);
   exit_code = cli_check_outputs(session, NULL, 0);
-  return exit_code == CLI_DONE ? cli_check_inputs_stay(session, &job->path, 1, NULL, 0) : exit_code;
+  return exit_code == CLI_DONE ? cli_check_inputs_stay(session, paths, *n_paths, NULL, 0) : exit_code;
 }
 
 /* Judges by content, so that a wrong ending does not mislead. A pipe, which can be read only once, counts as a
@@ -110,14 +112,19 @@ static void print_image(const info_job *job) {
     printf("  %zu samples that are not finite\n", job->n_wrong_samples);
 }
 
+/* Of either key, the first count that is not 0; else 0. */
+static uint64_t count_of(const info_job *job, const char *key, const char *other) {
+  const conic_fact *fact;
+  for (size_t i = 0; job->facts && (fact = conic_facts_at(job->facts, i)); i++)
+    if (fact->type == CONIC_FACT_COUNT && fact->count && (strcmp(fact->key, key) == 0 || strcmp(fact->key, other) == 0))
+      return fact->count;
+  return 0;
+}
+
 /* The file's size over its points; 0 where either is unknown. */
 static double bytes_per_point(const info_job *job) {
-  const conic_fact *fact;
-  for (size_t i = 0; job->facts && job->has_bytes && (fact = conic_facts_at(job->facts, i)); i++)
-    if (fact->type == CONIC_FACT_COUNT && fact->count &&
-        (strcmp(fact->key, "points") == 0 || strcmp(fact->key, "gaussians") == 0))
-      return (double)job->bytes / (double)fact->count;
-  return 0.0;
+  const uint64_t n = count_of(job, "points", "gaussians");
+  return n && job->has_bytes ? (double)job->bytes / (double)n : 0.0;
 }
 
 static void print_cameras(const info_job *job) {
@@ -155,7 +162,21 @@ static const char *kind_of(const info_job *job) {
   return job->is_cameras ? "cameras" : job->facts ? conic_facts_at(job->facts, 0)->text : "exr";
 }
 
-static int print_text(const info_job *job) {
+static int is_sound(const info_job *job) {
+  return job->facts ? cli_facts_are_sound(job->facts) : job->n_wrong_samples == 0;
+}
+
+/* A line of a table. */
+static void print_row(const info_job *job) {
+  printf("%-8s %14" PRIu64 " %12" PRIu64 " %12" PRIu64 "  %s%s\n", kind_of(job), job->bytes,
+         count_of(job, "points", "gaussians"), count_of(job, "triangles", "faces"),
+         !job->is_check  ? ""
+         : is_sound(job) ? "sound  "
+                         : "not sound  ",
+         job->path);
+}
+
+static void print_whole(const info_job *job) {
   double share = bytes_per_point(job);
   printf("kind       %s\n", kind_of(job));
   if (job->has_bytes)
@@ -170,9 +191,6 @@ static int print_text(const info_job *job) {
     print_cameras(job);
   else
     print_image(job);
-  if (fflush(stdout) != 0 || ferror(stdout))
-    return cli_error(CLI_RESOURCE, "-: cannot write: %s", strerror(errno));
-  return CLI_DONE;
 }
 
 static void report_image(cli_json *json, const info_job *job) {
@@ -185,8 +203,7 @@ static void report_image(cli_json *json, const info_job *job) {
   cli_json_close(json);
 }
 
-static void report(cli_json *json, const void *cookie) {
-  const info_job *job = cookie;
+static void report_file(cli_json *json, const info_job *job) {
   cli_json_text(json, "kind", kind_of(job));
   if (job->has_bytes)
     cli_json_count(json, "bytes", job->bytes);
@@ -199,37 +216,83 @@ static void report(cli_json *json, const void *cookie) {
   else
     report_image(json, job);
   if (job->is_check)
-    cli_json_bool(json, "sound", job->facts ? cli_facts_are_sound(job->facts) : job->n_wrong_samples == 0);
+    cli_json_bool(json, "sound", is_sound(job));
+}
+
+/* One file, or those of several that could be read. */
+static void report(cli_json *json, const void *cookie) {
+  const info_files *files = cookie;
+  if (files->n == 1) {
+    report_file(json, &files->jobs[0]);
+    return;
+  }
+  cli_json_array(json, "files");
+  for (int i = 0; i < files->n; i++)
+    if (files->jobs[i].is_read) {
+      cli_json_object(json, NULL);
+      cli_json_text(json, "file", files->jobs[i].path);
+      report_file(json, &files->jobs[i]);
+      cli_json_close(json);
+    }
+  cli_json_close(json);
+}
+
+/* Of several files, what cannot be read is told, and the others go on. */
+static int tell_files(cli_session *session, info_files *files) {
+  const int is_text_wanted = !session->json_path || strcmp(session->json_path, "-") != 0;
+  int worst = CLI_DONE;
+  if (is_text_wanted && files->n > 1)
+    printf("%-8s %14s %12s %12s  %s\n", "kind", "bytes", "points", "triangles", "file");
+  for (int i = 0; i < files->n; i++) {
+    info_job *job = &files->jobs[i];
+    const int exit_code = cli_exit_of(read_file(session, job));
+    job->is_read = exit_code == CLI_DONE;
+    worst = exit_code > worst ? exit_code : worst;
+    if (job->is_read && is_text_wanted)
+      (files->n > 1 ? print_row : print_whole)(job);
+  }
+  if (is_text_wanted && (fflush(stdout) != 0 || ferror(stdout)))
+    return cli_error(CLI_RESOURCE, "-: cannot write: %s", strerror(errno));
+  const int written = worst == CLI_DONE || files->n > 1 ? cli_json_write(session, report, files) : CLI_DONE;
+  return written > worst ? written : worst;
 }
 
 static int run(cli_session *session, int argc, char **argv) {
-  info_job job;
-  memset(&job, 0, sizeof job);
-  job.path = "-"; /* until the arguments name one */
-  int exit_code = parse(session, argc, argv, &job);
-  if (exit_code == CLI_DONE)
-    exit_code = cli_session_open(session);
-  if (exit_code == CLI_DONE) {
-    int is_text_wanted = !session->json_path || strcmp(session->json_path, "-") != 0;
-    exit_code = cli_exit_of(read_file(session, &job));
-    if (exit_code == CLI_DONE && is_text_wanted)
-      exit_code = print_text(&job);
-    if (exit_code == CLI_DONE)
-      exit_code = cli_json_write(session, report, &job);
-    conic_facts_destroy(job.facts);
-    conic_cameras_release(session->context, &job.cameras);
-    conic_image_release(session->context, &job.image);
+  info_job wanted;
+  const char *paths[argc + 1];
+  info_files files = {NULL, 0};
+  memset(&wanted, 0, sizeof wanted);
+  int exit_code = parse(session, argc, argv, &wanted, paths, &files.n);
+  if (exit_code != CLI_DONE)
+    return exit_code < 0 ? CLI_DONE : exit_code;
+  files.jobs = calloc((size_t)files.n, sizeof *files.jobs);
+  if (!files.jobs)
+    return cli_error(CLI_RESOURCE, "info: out of memory");
+  for (int i = 0; i < files.n; i++) {
+    files.jobs[i] = wanted;
+    files.jobs[i].path = paths[i];
   }
-  return exit_code < 0 ? CLI_DONE : exit_code;
+  exit_code = cli_session_open(session);
+  if (exit_code == CLI_DONE)
+    exit_code = tell_files(session, &files);
+  for (int i = 0; i < files.n; i++) {
+    conic_facts_destroy(files.jobs[i].facts);
+    if (session->context)
+      conic_cameras_release(session->context, &files.jobs[i].cameras);
+    if (session->context)
+      conic_image_release(session->context, &files.jobs[i].image);
+  }
+  free(files.jobs);
+  return exit_code;
 }
 
 const cli_command cli_info = {
     .name = "info",
     .summary = "says what a file holds, and whether it is sound",
-    .usage = "conic info FILE [--check] [--cameras] [--json -]",
+    .usage = "conic info FILE… [--check] [--cameras] [--json -]",
     .run = run,
     .description =
         "Reads whatever conic reads: points, meshes, Gaussian scenes, pictures in EXR, files of cameras. With "
-        "--check it also says whether all of it can be drawn.",
+        "--check it also says whether all of it can be drawn. Of several files it prints a table.",
     .examples = {{"look for what cannot be drawn", "conic info scan.ply --check"}},
 };

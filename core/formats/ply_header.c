@@ -84,9 +84,14 @@ static int is_word(const header_line *line, int i_word, const char *word) {
   return i_word < line->n_words && strcmp(line->words[i_word], word) == 0;
 }
 
+/* Old exporters of Blender left `comment` out of "Created by Blender". */
+static int is_created_by(const header_line *line) {
+  return is_word(line, 0, "Created");
+}
+
 /* Comments are ignored, however long, unless read_comment knows them. */
 static int is_comment(const header_line *line) {
-  return line->n_words == 0 || is_word(line, 0, "comment") || is_word(line, 0, "obj_info");
+  return line->n_words == 0 || is_word(line, 0, "comment") || is_word(line, 0, "obj_info") || is_created_by(line);
 }
 
 static conic_status wrong_header(conic_input *input, const header_line *line, const char *what, const char *word) {
@@ -291,6 +296,10 @@ static conic_status read_lines(conic_input *input, conic_ply_header *header) {
     status = wrong_header(input, &line, "not a PLY file: it does not begin with 'ply'", NULL);
   while (status == CONIC_OK) {
     status = read_line(input, &line, header);
+    if (status == CONIC_OK && is_created_by(&line))
+      conic_log(input->context, CONIC_LOG_WARNING,
+                "%s: 'Created' is no word of a header; taken as a comment (line %llu)", input->name,
+                (unsigned long long)line.line);
     if (status != CONIC_OK || is_comment(&line))
       continue;
     if (is_word(&line, 0, "end_header"))

@@ -8,6 +8,9 @@ run 0 make sphere -n 300 -o s.ply
 printf '0 0 0 5\n1 0 0 6\n0 1 0 7\n0 0 1 8\n1 1 0 9\n1 0 1 5\n0 1 1 6\n1 1 1 7\n' > points.xyz
 cp s.ply taken.ply
 : > taken.png
+sed 's/^format .*/&\nCreated by Blender 2.49 - www.blender.org/' <<< "$(printf '%s\n' ply 'format ascii 1.0' \
+  'element vertex 3' 'property float x' 'property float y' 'property float z' 'element face 1' \
+  'property list uchar int vertex_indices' end_header '0 0 0' '1 0 0' '0 1 0' '3 0 1 2')" > old.ply
 export LC_ALL=C
 
 n_commands=0
@@ -181,6 +184,15 @@ done << 'END'
 0||render points.xyz -o a.png --size 16x16 --color-by height --ramp turbo
 2|did you mean 'viridis'?); there are sequential, grey, heat|render points.xyz -o a.png --color-by height --ramp virids
 2|there are sequential, grey, heat, diverging, terrain, viridis, magma, turbo, classes|render s.ply -o a.png --ramp list
+3|conic prepare survey.laz -o OUT.ply writes points as splats|convert survey.laz -o survey.ply
+3|conic prepare survey.xyz -o OUT.ply|convert survey.xyz survey.ply
+3|not read over the web; download it first|convert http://localhost/half.ply -o half.spz
+3|not read over the web; download it first|render http://localhost/half.ply -o half.png
+3|not read over the web; download it first|http://localhost/half.ply
+3|not read over the web; download it first|prepare http://localhost/half.las half.ply
+0||info s.ply points.xyz --check
+3|missing.ply: cannot read|info s.ply missing.ply points.xyz
+0|old.ply: 'Created' is no word of a header|render old.ply -o a.png --size 16x16
 END
 [[ $n_commands -ge 150 ]] || fail "only $n_commands commands were read"
 
@@ -188,6 +200,22 @@ END
 run_as_typed 0 render s.ply -o plain.pfm --size 32x32 --projection orthographic --background none
 run_as_typed 0 render s.ply words.pfm -s 32x32 --ortho --transparent
 cmp -s plain.pfm words.pfm || fail "words draw another picture than options"
+
+# A table of files; what cannot be read is left out.
+"$conic" info s.ply missing.ply points.xyz --check > out 2> err
+[[ $(awk '{print $1, $3, $NF}' out) == $'kind points file\nply 300 s.ply\nxyz 8 points.xyz' ]] || fail "info: $(cat out)"
+"$conic" info s.ply missing.ply points.xyz --json - > out 2> err
+python3 -c 'import json, sys; print(*((f["file"], f["kind"], f["points"]) for f in json.load(sys.stdin)["files"]))' \
+  < out | grep -qxF "('s.ply', 'ply', 300) ('points.xyz', 'xyz', 8)" || fail "info --json: $(cat out)"
+
+# A command that is stopped says its own name, whatever part of it was at work.
+run 0 make sphere -n 100000 -o large.ply
+run 0 render large.ply -o large.pfm --size 1200x1200 --quiet
+"$conic" judge large.ply --picture large.pfm --size 1200x1200 --plain > out 2> err < /dev/null &
+sleep 2
+kill $!
+wait $! && fail "judge goes on after SIGTERM"
+grep -qx 'conic: error: judge: cancelled' err || fail "judge says $(cat err)"
 
 # Nothing is said where it is not wanted.
 run_as_typed 0 render s.ply -o a.png -s 16x16 --ortho --quiet
