@@ -444,7 +444,7 @@ static int take_output(cli_session *session, const option_set *set, int argc, ch
                        int *n_positional) {
   const char **former;
   const cli_option *option = find_option(set, "o", 1, 0, &former);
-  if (!option || *former || session->host || *n_positional < 2)
+  if (!option || *former || session->host || session->team || *n_positional < 2) /* ranks may look at other times */
     return CLI_DONE;
   const char *last = positional[*n_positional - 1], *other = positional[*n_positional - 2];
   const int is_input = *conic_file_ending(other) || strcmp(other, "-") == 0 || strcmp(session->command, "make") == 0;
