@@ -50,6 +50,11 @@ static int run_known(const cli_command *command, int is_meant, int argc, char **
   return exit_code;
 }
 
+static int is_output(const void *cookie, const char *name) {
+  (void)cookie;
+  return strcmp(name, "o") == 0;
+}
+
 /* conic FILE: draws it into FILE.png here, unless an output is named. */
 static int run_file(int argc, char **argv, const struct conic_executor *team) {
   static char render[] = "render", o[] = "-o";
@@ -58,7 +63,9 @@ static int run_file(int argc, char **argv, const struct conic_executor *team) {
   char output[256], *words[argc + 3];
   int is_named = argc > 1 && argv[1][0] != '-';
   for (int i = 1; i < argc; i++)
-    is_named |= strncmp(argv[i], "-o", 2) == 0 || strncmp(argv[i], "--out", 5) == 0;
+    is_named |= strncmp(argv[i], "-o", 2) == 0 ||
+                (strncmp(argv[i], "--", 2) == 0 &&
+                 cli_word_for_option(argv[i] + 2, strcspn(argv[i] + 2, "="), is_output, NULL));
   snprintf(output, sizeof output, "%.*s.png", n_stem < 200 ? n_stem : 200, base);
   words[0] = render;
   memcpy(words + 1, argv, (size_t)argc * sizeof *argv);

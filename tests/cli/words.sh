@@ -36,6 +36,7 @@ done << 'END'
 0|in full: conic render s.ply -o r.png --size 16x16|render s.ply r.png --size 16x16
 0|in full: conic render --size 16x16 s.ply -o r2.pfm|render --size 16x16 s.ply r2.pfm
 0|in full: conic render s.ply -o u.png|s.ply u.png -s 16x16
+0|in full: conic render s.ply --output=named.png|s.ply --output=named.png --size 16x16
 2|no output|render s.ply
 2|no output|render s.ply taken.ply
 2|typo.ply: cannot write: no format is known by this ending|render s.ply typo.ply
