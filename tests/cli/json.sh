@@ -192,6 +192,20 @@ echo "{$camera, \"cx\": 20.5, \"cy\": 20.5}" > off.json
 run 0 make gaussians -n 60 -o many.ply
 run 0 render many.ply --camera off.json --profile gsplat-1.6 --background 1,1,1 -o off.exr
 write judge-two-wrong judge judge many.ply --camera middle.json --profile gsplat-1.6 --picture off.exr
+run 0 render many.ply --camera off.json --profile gsplat-1.6 --background 1,1,1 -o tile.pfm
+python3 - << 'P' # no red anywhere; and the tile at 1, 1 is black; rows come from below
+data = open("tile.pfm", "rb").read()
+head, rows = data[:-40 * 40 * 12], bytearray(data[-40 * 40 * 12:])
+red = bytearray(rows)
+for i in range(0, len(red), 12):
+    red[i:i + 4] = bytes(4)
+open("red.pfm", "wb").write(head + red)
+for y in range(8, 24):
+    rows[(y * 40 + 16) * 12:(y * 40 + 32) * 12] = bytes(16 * 12)
+open("tile.pfm", "wb").write(head + rows)
+P
+write judge-tile-wrong judge judge many.ply --camera off.json --profile gsplat-1.6 --background 1,1,1 --picture tile.pfm
+write judge-red-wrong judge judge many.ply --camera off.json --profile gsplat-1.6 --background 1,1,1 --picture red.pfm
 write judge-splats-wrong judge judge thinner.ply --size 160x120 --picture prefiltered.exr
 write judge-mesh-wrong judge judge triangle.obj --as mesh --size 256x256 --picture triangle.exr --shade none
 cat two.splat two.splat > copies.splat
