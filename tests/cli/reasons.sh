@@ -30,12 +30,12 @@ done << 'END'
 --light|camera:0,0,0|0,0,0 is no direction
 --light|1,2|3 numbers are wanted
 --light|1,2,x|3 numbers are wanted
---light|1,2,3:1,2|a colour is 1 or 3 numbers
+--light|1,2,3:1,2|a colour is 1 or 3 numbers, a name as white, or #rrggbb
 --light|1,2,3:1:2|a sun's radius ends with deg
 --light|1,2,3:1:91deg|a sun's radius is 0 to 90 degrees
---sky|1,2|a colour is 1 or 3 numbers
+--sky|1,2|a colour is 1 or 3 numbers, a name as white, or #rrggbb
 --sky|-1|a colour is within 0 and 1e6
---background|1,2,3,4|a colour is 1 or 3 numbers
+--background|1,2,3,4|a colour is 1 or 3 numbers, a name as white, or #rrggbb
 --up|0,0,0|0,0,0 is no direction
 --up|1,2|3 numbers are wanted
 --eye|1,2,3,4|3 numbers are wanted
