@@ -18,7 +18,8 @@ typedef struct info_job {
   int is_cameras, size[2]; /* is_cameras: --cameras, or the file has only cameras; size: of their pictures, by --size */
   conic_facts *facts;      /* null for an image or cameras */
   conic_cameras cameras;
-  conic_image image;
+  int image_size[2];
+  unsigned image_planes; /* a bit for each conic_plane */
   size_t n_wrong_samples;
 } info_job;
 
@@ -60,16 +61,31 @@ static void find_size(info_job *job) {
   job->bytes = found.n_bytes;
 }
 
-static void check_image(info_job *job) {
-  size_t n_pixels = (size_t)job->image.width * (size_t)job->image.height;
+static void check_image(const conic_image *image, info_job *job) {
+  size_t n_pixels = (size_t)image->width * (size_t)image->height;
   for (int plane = 0; plane < CONIC_N_PLANES; plane++) {
     const conic_plane_description *description = conic_plane_describe((conic_plane)plane);
-    const float *samples = job->image.planes[plane];
+    const float *samples = image->planes[plane];
     if (!samples || description->is_uint)
       continue;
     for (size_t i = 0; i < n_pixels * (size_t)description->n_channels; i++)
       job->n_wrong_samples += samples[i] - samples[i] != 0.0f;
   }
+}
+
+/* Keeps what is told of it, not the picture: there may be many. */
+static conic_status read_image(cli_session *session, info_job *job) {
+  conic_image image;
+  conic_status status = conic_image_read(session->context, job->path, &image);
+  if (status != CONIC_OK)
+    return status;
+  job->image_size[0] = image.width;
+  job->image_size[1] = image.height;
+  job->image_planes = conic_image_planes(&image);
+  if (job->is_check)
+    check_image(&image, job);
+  conic_image_release(session->context, &image);
+  return CONIC_OK;
 }
 
 static conic_status read_cameras(cli_session *session, info_job *job) {
@@ -91,17 +107,14 @@ static conic_status read_file(cli_session *session, info_job *job) {
   }
   if (!is_exr(job->path))
     return conic_source_inspect(session->context, job->path, job->is_check, &job->facts);
-  conic_status status = conic_image_read(session->context, job->path, &job->image);
-  if (status == CONIC_OK && job->is_check)
-    check_image(job);
-  return status;
+  return read_image(session, job);
 }
 
 static void print_image(const info_job *job) {
   const char *separator = "";
-  printf("size       %dx%d\nplanes     ", job->image.width, job->image.height);
+  printf("size       %dx%d\nplanes     ", job->image_size[0], job->image_size[1]);
   for (int plane = 0; plane < CONIC_N_PLANES; plane++)
-    if (job->image.planes[plane]) {
+    if (job->image_planes >> plane & 1u) {
       printf("%s%s", separator, conic_plane_describe((conic_plane)plane)->name);
       separator = ", ";
     }
@@ -194,11 +207,11 @@ static void print_whole(const info_job *job) {
 }
 
 static void report_image(cli_json *json, const info_job *job) {
-  cli_json_count(json, "width", (uint64_t)job->image.width);
-  cli_json_count(json, "height", (uint64_t)job->image.height);
+  cli_json_count(json, "width", (uint64_t)job->image_size[0]);
+  cli_json_count(json, "height", (uint64_t)job->image_size[1]);
   cli_json_array(json, "planes");
   for (int plane = 0; plane < CONIC_N_PLANES; plane++)
-    if (job->image.planes[plane])
+    if (job->image_planes >> plane & 1u)
       cli_json_text(json, NULL, conic_plane_describe((conic_plane)plane)->name);
   cli_json_close(json);
 }
@@ -279,8 +292,6 @@ static int run(cli_session *session, int argc, char **argv) {
     conic_facts_destroy(files.jobs[i].facts);
     if (session->context)
       conic_cameras_release(session->context, &files.jobs[i].cameras);
-    if (session->context)
-      conic_image_release(session->context, &files.jobs[i].image);
   }
   free(files.jobs);
   return exit_code;
