@@ -122,7 +122,7 @@ static int find_every(const locate_job *j, conic_fault_place *place) {
       for (int rest = 0; rest < n; rest++) {
         const region r = {.last = {whole[0] - 1, whole[1] - 1}, .axis = axis, .n = n, .rest = rest};
         if (axis < 2 && j->first[axis] % n != rest)
-          break;
+          continue;
         *place = (conic_fault_place){.kind = axis < 2 ? "every" : "checkerboard", .what = words[axis], .size = n};
         place->at[axis % 2] = rest;
         if (j->last[axis % 2] - j->first[axis % 2] >= 2 * n && is_fault_of_region(j, &r, place))

@@ -119,6 +119,7 @@ IN_PICTURE = {
     "last-column": ("border column", edit(lambda p, z: p.__setitem__((slice(None), slice(-1, None)), 0.0))),
     "lower-half": ("half", edit(lambda p, z: p.__setitem__(slice(p.shape[0] // 2, None), 0.0))),
     "every-third": ("every", edit(every_third)),
+    "every-fifth-column": ("every", edit(lambda p, z: p.__setitem__((slice(None), slice(2, None, 5)), 0.0))),
     "nan": ("nan", edit(nan_at)),
     "checkers": ("checkerboard", edit(checkers)),
     "bgr": ("bgr", lambda p, z: (p[..., [2, 1, 0, 3]], z)),

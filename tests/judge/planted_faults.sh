@@ -8,4 +8,5 @@ if ! python3 -c 'import numpy' 2> /dev/null; then
   exit 77
 fi
 python3 "$1/tests/judge/planted_faults.py" "$1" "$2" 1 alpha-squared-weight no-half sh-direction exp2 cross-half \
-  negative-colours black-tile-16 last-row-of-tiles lower-half every-third nan checkers bgr shift-1px alpha-1 right
+  negative-colours black-tile-16 last-row-of-tiles lower-half every-third every-fifth-column \
+  nan checkers bgr shift-1px alpha-1 right
