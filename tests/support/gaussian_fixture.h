@@ -99,3 +99,13 @@ static inline int gaussians_have(conic_gaussian_kind kind) {
       return conic_feature_at(i)->available;
   return 1;
 }
+
+static inline conic_gaussians gaussians_read_again(conic_context *context, const char *path, int keeps_source) {
+  conic_gaussians scene;
+  conic_gaussians_read_options options;
+  conic_gaussians_read_options_init(&options);
+  options.keeps_source = keeps_source;
+  CHECK_OK(conic_gaussians_read(context, path, &options, &scene));
+  CHECK(unlink(path) == 0);
+  return scene;
+}
