@@ -119,17 +119,26 @@ static void tell_diagnosis(const char *planted, const char *second, const diagno
   fflush(stdout);
 }
 
-/* Returns whether the mistake was named first; a picture that is right has none. */
-static int try_fault(const diagnosed_world *w, plain_fault fault, int is_8_bit, size_t *n_seen) {
+/* How often what was planted was found. */
+typedef struct diagnosis_tally {
+  size_t tried, seen, named, accused;
+  size_t nearest; /* came first, but only as what is nearest */
+} diagnosis_tally;
+
+/* Returns whether the mistake was named first; a picture that is right has none. No name is wrong: of two, one is it.
+ */
+static int try_fault(const diagnosed_world *w, plain_fault fault, int is_8_bit, diagnosis_tally *counts) {
   const diagnosed_picture p = diagnose(w, 1u << fault, is_8_bit);
-  int is_first = p.n_found > 0 && strcmp(p.found[0].name, plain_fault_names[fault]) == 0 && !p.found[0].with;
-  int is_named = is_first && !p.found[0].is_nearest;
-  CHECK(is_first || !p.n_found || p.found[0].is_nearest || p.found[0].with); /* no single wrong name */
+  const conic_diagnosis *first = p.n_found ? &p.found[0] : NULL;
+  const int is_it = first && strcmp(first->name, plain_fault_names[fault]) == 0;
+  const int is_named = is_it && !first->with && !first->is_nearest;
+  CHECK(!first || first->is_nearest || is_it || (first->with && strcmp(first->with, plain_fault_names[fault]) == 0));
   if (!p.n_wrong) {
     CHECK(p.n_found == 0);
     return 1;
   }
-  ++*n_seen;
+  counts->seen++;
+  counts->nearest += (size_t)(is_it && !first->with && first->is_nearest);
   if (!is_named || w->tells)
     tell_diagnosis(plain_fault_names[fault], is_named ? "" : "NOT NAMED FIRST", &p);
   return is_named;
@@ -219,17 +228,20 @@ static void test_made(conic_context *context) {
   snprintf(path, sizeof path, "%s", files_path("scene.ply"));
   for (size_t k = 0; k < sizeof profiles / sizeof *profiles; k++) {
     diagnosed_world w;
-    size_t n_seen = 0, n_named = 0, n_tried = 0;
+    size_t n_named = 0, n_tried = 0;
+    diagnosis_tally counts = {0};
     make_world(context, 7 + k, profiles[k], path, &w);
     w.tells = getenv("DIAGNOSIS_TELLS") != NULL;
     const diagnosed_picture right = diagnose(&w, 0, 0);
     CHECK(right.n_wrong == 0 && right.n_found == 0);
     for (plain_fault fault = 0; is_of_gaussians(fault); fault++, n_tried++)
-      n_named += (size_t)try_fault(&w, fault, 0, &n_seen);
-    printf("%s: %zu of %zu mistakes are seen, %zu not named\n", conic_gaussian_profile_name(profiles[k]), n_seen,
+      n_named += (size_t)try_fault(&w, fault, 0, &counts);
+    printf("%s: %zu of %zu mistakes are seen, %zu not named\n", conic_gaussian_profile_name(profiles[k]), counts.seen,
            n_tried, n_tried - n_named);
-    /* Where discs end is in doubt along whole edges of tiles, so that small differences there stay unexplained. */
-    CHECK(n_named + (profiles[k] == CONIC_PROFILE_2DGS_GSPLAT ? 3 : 0) >= n_tried);
+    /* Where discs end is in doubt along whole edges of tiles. There, a tenth to a fifth of the difference stays with
+     * three of the mistakes, which are too much for a name: they come first, as what is nearest. */
+    CHECK(n_named + counts.nearest == n_tried);
+    CHECK(counts.nearest <= (profiles[k] == CONIC_PROFILE_2DGS_GSPLAT ? 3 : 0));
     test_any_near(&w);
     test_pair(&w);
     close_world(&w);
@@ -328,11 +340,6 @@ static void test_surfels(conic_context *context) {
   conic_splats_release(context, &w.splats);
 }
 
-/* How often what was planted was found. */
-typedef struct diagnosis_tally {
-  size_t tried, seen, named, accused;
-} diagnosis_tally;
-
 static int names_both(const diagnosed_picture *p, int a, int b) {
   int is_a = 0, is_b = 0;
   for (int k = 0; k < p->n_found && k < 2 && !p->found[k].is_nearest; k++) {
@@ -371,7 +378,7 @@ static void try_scenes(conic_context *context, const char *path, uint64_t n, uin
     right.accused += none.n_found > 0;
     w.tells = 1;
     const size_t before = alone.seen;
-    const int is_named = try_fault(&w, (plain_fault)a, 0, &alone.seen);
+    const int is_named = try_fault(&w, (plain_fault)a, 0, &alone);
     alone.tried++;
     alone.named += (size_t)(is_named && alone.seen > before);
     if (a != b)
@@ -403,7 +410,7 @@ static void campaign(conic_context *context, int argc, char **argv) {
   open_world(&w);
   for (plain_fault fault = 0; is_of_gaussians(fault) && !has_pairs; fault++, tally.tried++) {
     const size_t before = tally.seen;
-    const int is_named = try_fault(&w, fault, is_8_bit, &tally.seen);
+    const int is_named = try_fault(&w, fault, is_8_bit, &tally);
     tally.named += (size_t)(is_named && tally.seen > before);
   }
   for (int pair = 0; has_pairs && pair < PLAIN_AFFINE * PLAIN_AFFINE; pair += step)
