@@ -36,6 +36,22 @@ static inline double conic_length(const double v[3]) {
   return sqrt(conic_dot(v, v));
 }
 
+/* The cosine of the angle between two vectors; −1 where one has no direction. Axes that are kept as floats are not of
+ * length 1: beside a cosine near 1, that would be much of the angle. */
+static inline double conic_cosine_between(const double a[3], const double b[3]) {
+  double lengths = sqrt(conic_dot(a, a) * conic_dot(b, b));
+  return lengths > 0.0 ? conic_dot(a, b) / lengths : -1.0;
+}
+
+/* The cosine of the sum of two angles, given theirs; −1 where it is more than a half turn. */
+static inline double conic_cosine_of_sum(double a, double b) {
+  a = a > 1.0 ? 1.0 : a < -1.0 ? -1.0 : a;
+  b = b > 1.0 ? 1.0 : b < -1.0 ? -1.0 : b;
+  if (a + b <= 0.0) /* over a half turn together: a ≤ cos(π − angle of b) */
+    return -1.0;
+  return a * b - sqrt((1.0 - a * a) * (1.0 - b * b));
+}
+
 static inline void conic_subtract(const double a[3], const double b[3], double difference[3]) {
   for (int axis = 0; axis < 3; axis++)
     difference[axis] = a[axis] - b[axis];

@@ -82,18 +82,13 @@ static void check_hybrid_node(const conic_hybrid *h, const conic_hybrid_node *no
   int is_out = 0, is_turned = 0;
   for (uint32_t i = node->begin; i < node->end; i++) {
     const conic_hybrid_cluster *cluster = &h->clusters[i];
-    double center[3], reach = conic_hybrid_reach(h, cluster), along = 0.0, cone = (double)cluster->bound.cone;
-    for (int axis = 0; axis < 3; axis++) {
+    double center[3], reach = conic_hybrid_reach(h, cluster);
+    for (int axis = 0; axis < 3; axis++)
       center[axis] = (double)cluster->bound.center[axis];
-      along += (double)cluster->bound.axis[axis] * (double)node->bound.axis[axis];
-    }
     double farthest = distance_of(&node->bound, center) + (double)cluster->bound.radius + reach;
     is_out |= !(farthest <= (double)node->bound.radius * (1.0 + hair));
-    if (node->bound.cone <= -1.0f)
-      continue;
-    along = along < 1.0 ? along : 1.0;
-    double sines = sqrt(1.0 - along * along) * sqrt(cone < 1.0 ? 1.0 - cone * cone : 0.0);
-    is_turned |= !(cone > 0.0 && along > 0.0 && along * cone - sines >= (double)node->bound.cone - 1e-4);
+    is_turned |= node->bound.cone > -1.0f &&
+                 !(conic_hybrid_cone_about(&cluster->bound, node->bound.axis) >= (double)node->bound.cone - 1e-4);
   }
   found->spheres += (size_t)is_out;
   found->cones += (size_t)is_turned;

@@ -126,3 +126,5 @@ void conic_hybrid_fill_nodes(const conic_hybrid_bound *bounds, const float *reac
 
 /* A sphere and a cone that hold both; a cone of more than half of all directions becomes all of them, -1. */
 conic_hybrid_bound conic_hybrid_join(const conic_hybrid_bound *a, const conic_hybrid_bound *b);
+/* The cosine of the half opening of a cone about an axis that holds the bound's; −1 where that is over a half turn. */
+double conic_hybrid_cone_about(const conic_hybrid_bound *bound, const float axis[3]);

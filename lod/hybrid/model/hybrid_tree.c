@@ -1,5 +1,6 @@
 /* The hierarchy over the clusters. */
 #include "core/base/radix.h"
+#include "core/base/vectors.h"
 #include "lod/hybrid/model/hybrid_model.h"
 
 /* Halves like these need no more levels of nodes than they must. */
@@ -107,6 +108,15 @@ static void join_spheres(const conic_hybrid_bound *a, const conic_hybrid_bound *
   both->radius = (float)(farthest * hair);
 }
 
+double conic_hybrid_cone_about(const conic_hybrid_bound *bound, const float axis[3]) {
+  double own[3], about[3];
+  for (int i = 0; i < 3; i++) {
+    own[i] = (double)bound->axis[i];
+    about[i] = (double)axis[i];
+  }
+  return conic_cosine_of_sum(conic_cosine_between(own, about), (double)bound->cone);
+}
+
 /* The axis between both, and the wider of the two openings from there; cosines of sums, no angles. */
 static void join_cones(const conic_hybrid_bound *a, const conic_hybrid_bound *b, conic_hybrid_bound *both) {
   double axis[3], length2 = 0.0, least = 1.0;
@@ -121,13 +131,7 @@ static void join_cones(const conic_hybrid_bound *a, const conic_hybrid_bound *b,
   for (int i = 0; i < 3; i++)
     both->axis[i] = (float)(axis[i] / sqrt(length2));
   for (int k = 0; k < 2; k++) {
-    const conic_hybrid_bound *one = k ? b : a;
-    double along = 0.0, cosine = (double)one->cone;
-    for (int i = 0; i < 3; i++)
-      along += (double)one->axis[i] * (double)both->axis[i];
-    along = along < 1.0 ? along : 1.0;
-    double sines = sqrt(1.0 - along * along) * sqrt(cosine < 1.0 ? 1.0 - cosine * cosine : 0.0);
-    double sum = along > 0.0 ? along * cosine - sines : -1.0;
+    double sum = conic_hybrid_cone_about(k ? b : a, both->axis);
     least = sum < least ? sum : least;
   }
   both->cone = least > 1e-3 ? (float)(least - 1e-5) : -1.0f;

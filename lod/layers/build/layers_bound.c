@@ -151,15 +151,6 @@ static void find_axis(conic_layers_node *node) {
     node->axis[axis] = length > 0.0 ? (double)(float)(sum[axis] / length) : axis == 2;
 }
 
-/* The cosine of the sum of two angles, given theirs; −1 where it is more than a half turn. */
-static double cosine_of_sum(double a, double b) {
-  a = a > 1.0 ? 1.0 : a < -1.0 ? -1.0 : a;
-  b = b > 1.0 ? 1.0 : b < -1.0 ? -1.0 : b;
-  if (a + b <= 0.0) /* over a half turn together: a ≤ cos(π − angle of b) */
-    return -1.0;
-  return a * b - sqrt((1.0 - a * a) * (1.0 - b * b));
-}
-
 /* The normal with which a sample is drawn. */
 static void drawn_normal(const conic_layers_plan *plan, const conic_layers_node *leaf, size_t i, int axes,
                          float normal[3]) {
@@ -292,16 +283,9 @@ static void reach_below(void *data, size_t i_item) {
   raise_most(b, most);
 }
 
-/* The cosine of the angle between two axes. They are floats, and so not of length 1: beside a cosine near 1, that would
- * be much of the angle. */
-static double cosine_between(const double a[3], const double b[3]) {
-  double length2 = conic_dot(a, a) * conic_dot(b, b);
-  return length2 > 0.0 ? conic_dot(a, b) / sqrt(length2) : -1.0;
-}
-
 static void widen_cone(void *data, const conic_layers_node *below) {
   bounding *b = data;
-  double cosine = cosine_of_sum(cosine_between(b->node->axis, below->axis), below->cone);
+  double cosine = conic_cosine_of_sum(conic_cosine_between(b->node->axis, below->axis), below->cone);
   b->node->cone = cosine < b->node->cone ? cosine : b->node->cone;
 }
 
