@@ -9,6 +9,7 @@ struct conic_executor;
 #define CLI_READABLE                                                                                                   \
   "PLY, XYZ, PTS, CSV, LAS, LAZ, PCD, E57, PTX, OBJ, STL, OFF, glTF, GLB, 3MF, DAE, FBX, .cot, .chy, "                 \
   ".lpc, COPC, EPT, Potree 2"
+#define CLI_READABLE_GAUSSIANS "Gaussian scenes in .ply, .splat, .ksplat, .spz, .sog and glTF"
 
 /* Words that a command takes as an argument, or as an option's value. */
 typedef struct cli_words {

@@ -33,7 +33,7 @@ void cli_help_usage(FILE *to) {
 
 static void print_program(void) {
   cli_help_usage(stdout);
-  puts("\nreads: " CLI_READABLE "\n\nexit codes:");
+  puts("\nreads: " CLI_READABLE "; " CLI_READABLE_GAUSSIANS "\n\nexit codes:");
   for (const cli_help_row *row = cli_help_exit_codes; row->name; row++)
     printf("  %-2s %s\n", row->name, row->meaning);
   puts("\nThe guide begins with docs/guide/first-picture.md beside conic's source.");

@@ -209,8 +209,7 @@ void cli_help_man_program(void) {
       "pictures, and says why a pixel is as it is.",
       0);
   puts(".PP");
-  put_paragraph("conic reads " CLI_READABLE
-                " and Gaussian scenes in .ply, .splat, .spz and .sog. A long option takes its "
+  put_paragraph("conic reads " CLI_READABLE " and " CLI_READABLE_GAUSSIANS ". A long option takes its "
                 "value as --name value or --name=value; -- ends the options.",
                 0);
   puts(".SH COMMANDS");

@@ -373,7 +373,7 @@ const cli_command cli_render = {
     .run = run,
     .description =
         "Draws one or more inputs as one scene into a picture. It reads " CLI_READABLE ", "
-        "those from .lpc on also from http:// URLs, and Gaussian scenes in .ply, .splat, .spz and .sog; - is "
+        "those from .lpc on also from http:// URLs, and " CLI_READABLE_GAUSSIANS "; - is "
         "standard input. What a file does not say (normals, "
         "sizes of points, what points up, the camera) is estimated. The ending of OUT says what is written. Lengths "
         "are in the units of the file or, with an x behind them (2x), multiples of the typical distance between "
