@@ -153,3 +153,26 @@ static inline void check_color(const conic_splats *points, size_t i, const int c
   for (int channel = 0; channel < 3 && points->color[0]; channel++)
     CHECK_NEAR((double)points->color[channel][i], conic_srgb_decode(code[channel] / 255.0), bound);
 }
+
+/* A format: three letters with which its dialects begin, and what writes one into the file. */
+typedef struct dialect_format {
+  const char *ending;
+  void (*write)(const char *dialect);
+} dialect_format;
+
+/* The format of a dialect, by its number among n; n where there is none. */
+static inline size_t dialect_format_of(const char *d, const dialect_format *formats, size_t n) {
+  size_t i = 0;
+  while (i < n && strncmp(d, formats[i].ending, 3) != 0)
+    i++;
+  return i;
+}
+
+/* Writes a dialect's file, and returns its path. */
+static inline const char *dialect_write(const char *d, const dialect_format *format, mesh_file *file) {
+  char name[16];
+  file->n = 0;
+  format->write(d);
+  snprintf(name, sizeof name, "a.%s", format->ending);
+  return files_write_bytes(name, file->bytes, file->n);
+}
