@@ -145,7 +145,7 @@ static conic_camera fine_camera_of(const conic_camera *camera, int samples) {
 static conic_planted right_gaussians(const conic_gaussians *gaussians, const conic_camera *camera,
                                      const conic_gaussian_options *options, const conic_gaussian_judging *judging) {
   conic_planted right = {.profile = options->profile,
-                         .rules = *conic_gaussian_rules_of(options->profile),
+                         .rules = *conic_profile_row_of(options->profile),
                          .prefilter = options->prefilter,
                          .most_degree = gaussians->sh_degree,
                          .is_opaque = judging->is_opaque,
@@ -198,7 +198,7 @@ conic_status conic_gaussian_diagnose(conic_context *context, const conic_gaussia
   conic_gaussian_judging_init(&how);
   *n_found = 0;
   if (!gaussians || (options && !conic_options_take(&own, options)) ||
-      (judging && !conic_options_take(&how, judging)) || !conic_gaussian_rules_of(own.profile))
+      (judging && !conic_options_take(&how, judging)) || !conic_profile_row_of(own.profile))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "diagnose: an argument is null, or there is no such profile");
   conic_status status = conic_gaussians_check(context, gaussians, "diagnose");
   if (status == CONIC_OK)

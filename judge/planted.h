@@ -63,7 +63,7 @@ typedef struct conic_planted {
   conic_camera camera;
   /* Of Gaussians: */
   conic_gaussian_profile profile;
-  conic_gaussian_rules rules;
+  conic_profile_row rules;
   double prefilter;
   conic_planted_order order;
   int is_reversed;

@@ -94,7 +94,7 @@ static conic_ray_meeting meet_kept(const conic_planted_frame *frame, const conic
 /* Returns α, or a negative number where nothing is composited. */
 static float planted_alpha(const conic_planted_frame *frame, const conic_ray_meeting *m) {
   const conic_planted *p = frame->planted;
-  const conic_gaussian_rules *rules = &p->rules;
+  const conic_gaussian_rules *rules = &frame->rules;
   const int is_ray = rules->shape == CONIC_SHAPE_RAY;
   const int is_tiny = !(m->half_q >= 0.0f && m->half_q < 80.0f); /* mistakes reach where exp_negative does not */
   float value = conic_exp_negative(is_tiny ? -80.0f : -m->half_q), most = rules->greatest_half_q;
@@ -155,7 +155,7 @@ static int covers_fine(const conic_planted_frame *frame, uint32_t k, int x, int 
 
 static void composite_fine(const conic_planted_frame *frame, const conic_composite_scratch *scratch, size_t n_listed,
                            int x, int y, composite_sums *s) {
-  const conic_gaussian_rules *rules = &frame->planted->rules;
+  const conic_gaussian_rules *rules = &frame->rules;
   const int is_by_ray = rules->shape == CONIC_SHAPE_RAY && frame->planted->order == CONIC_ORDER_OWN;
   size_t n_hits = 0;
   *s = (composite_sums){.T = 1.0f};

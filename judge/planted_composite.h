@@ -18,6 +18,7 @@ typedef struct conic_kept_gaussian {
 typedef struct conic_planted_frame {
   const conic_planted *planted;
   const conic_gaussian_view *view;
+  conic_gaussian_rules rules; /* of the pixels */
   conic_gaussian_shape shape;
   int samples; /* N × N a pixel */
   size_t n;

@@ -360,6 +360,7 @@ static void look(planted_job *j, int is_affine) {
     j->view.eye[axis] = p->rules.has_float_eye ? (double)(float)eye : eye;
   }
   j->frame.view = &j->view;
+  j->frame.rules = conic_gaussian_rules_of(&p->rules);
   j->frame.shape = !is_affine ? CONIC_SHAPE_SIGHT : p->prefilter > 0.0 ? CONIC_SHAPE_FILTERED : p->rules.shape;
 }
 

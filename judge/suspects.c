@@ -159,7 +159,7 @@ static void change_focal(conic_camera *camera, int how) {
 
 static void plant_profile(conic_planted *p, conic_gaussian_profile profile) {
   p->profile = profile;
-  p->rules = *conic_gaussian_rules_of(profile);
+  p->rules = *conic_profile_row_of(profile);
   p->prefilter = profile == CONIC_PROFILE_EXACT ? p->prefilter : 0.0;
   if (p->rules.takes_middle) {
     p->camera.cx = 0.5 * p->camera.width;
@@ -180,8 +180,8 @@ static void plant_extent(conic_planted *p, conic_planted_extent extent) {
     p->rules.coverage = CONIC_COVERAGE_TILES;
   if (extent == CONIC_EXTENT_EXACT) {
     p->rules.coverage = CONIC_COVERAGE_ALPHA;
-    p->rules.greatest_half_q = 0.0f;
-    p->rules.alpha_least = 1.0f / 255.0f;
+    p->rules.greatest_half_q = 0.0;
+    p->rules.alpha_least = 1.0 / 255.0;
   }
 }
 
@@ -189,7 +189,7 @@ static void plant_extent(conic_planted *p, conic_planted_extent extent) {
 static void plant_near(conic_planted *p, int how, double factor) {
   const double value = how ? factor * p->options.near_z : factor;
   p->rules.near_z = p->least_z = p->options.near_z = value;
-  p->rules.disc_near = p->rules.disc_near > 0.0f ? (float)(value > 0.0 ? value : 1e-6) : 0.0f;
+  p->rules.disc_near = p->rules.disc_near > 0.0 ? (value > 0.0 ? value : 1e-6) : 0.0;
 }
 
 /* Mirrors about the principal point. The renderer of surfels refuses a camera that mirrors, but its picture can be
@@ -308,10 +308,10 @@ void conic_suspect_plant(const conic_suspect *s, conic_planted *p) {
     plant_dilation(p, s->value);
     break;
   case OF_ALPHA_MOST:
-    p->rules.alpha_most = (float)s->value;
+    p->rules.alpha_most = s->value;
     break;
   case OF_ALPHA_LEAST:
-    p->rules.alpha_least = (float)s->value;
+    p->rules.alpha_least = s->value;
     break;
   case OF_FALLOFF:
     p->falloff_end = (float)s->value;
@@ -394,18 +394,18 @@ static int changes_focal(const conic_camera *camera, int how) {
 
 /* Whether it would be a mistake under these rules. */
 static int is_mistake(const conic_planted *right, const conic_suspect *s) {
-  const conic_gaussian_rules *rules = &right->rules;
+  const conic_profile_row *rules = &right->rules;
   const int is_ray = rules->shape == CONIC_SHAPE_RAY, is_ellipse = rules->shape == CONIC_SHAPE_ELLIPSE;
   switch (s->kind) {
   case OF_DILATION:
     return rules->shape != CONIC_SHAPE_DISC && (is_ray ? right->prefilter : rules->dilation) != s->value &&
            (is_ellipse || right->prefilter > 0.0);
   case OF_ALPHA_MOST:
-    return rules->alpha_most != (float)s->value;
+    return (float)rules->alpha_most != (float)s->value;
   case OF_EXTENT:
     if (s->how == CONIC_EXTENT_EXACT)
-      return rules->coverage != CONIC_COVERAGE_ALPHA || rules->greatest_half_q > 0.0f;
-    return s->how == CONIC_EXTENT_ELLIPSE ? !(rules->greatest_half_q > 0.0f)
+      return rules->coverage != CONIC_COVERAGE_ALPHA || rules->greatest_half_q > 0.0;
+    return s->how == CONIC_EXTENT_ELLIPSE ? !(rules->greatest_half_q > 0.0)
            : s->how == CONIC_EXTENT_TILES ? is_ellipse && rules->coverage != CONIC_COVERAGE_TILES
                                           : is_ellipse;
   case OF_ORDER:
@@ -426,7 +426,7 @@ static int is_mistake(const conic_planted *right, const conic_suspect *s) {
   case OF_CROSS:
     return is_ellipse;
   case OF_ALPHA_LEAST:
-    return rules->alpha_least > (float)s->value;
+    return (float)rules->alpha_least > (float)s->value;
   case OF_EYE:
     return right->most_degree > 0;
   case OF_NEAR:

@@ -36,7 +36,7 @@ typedef struct conic_gaussian_sight {
 typedef struct conic_view_rays conic_view_rays;
 
 typedef struct conic_gaussian_view {
-  const conic_gaussian_rules *rules;
+  const conic_profile_row *rules;
   const conic_camera *camera;
   double eye[3], center_px[2];
   double prefilter;            /* px²; of CONIC_SHAPE_RAY */

@@ -13,6 +13,7 @@ struct conic_gaussian_picture {
   conic_gaussian_options options;
   conic_camera camera;
   conic_gaussian_view view;
+  conic_gaussian_rules rules; /* of pixels */
   conic_gaussian_loops loops;
   conic_gaussian_statistics statistics;
   conic_gaussian_shape shape;
@@ -137,7 +138,7 @@ static void composite_tile(void *data, size_t i_tile, int i_thread) {
   const size_t x = f->bins.first_x + i_tile % f->bins.n_tiles_x, y = f->bins.first_y + i_tile / f->bins.n_tiles_x;
   const conic_view_rays *rays = f->view.rays;
   conic_gaussian_tile_begin(&tile, (int)x * CONIC_GAUSSIAN_TILE, (int)y * CONIC_GAUSSIAN_TILE);
-  conic_gaussian_list list = {.rules = f->view.rules,
+  conic_gaussian_list list = {.rules = &f->rules,
                               .footprints = f->footprints,
                               .rays = f->rays,
                               .filters = f->filters,
@@ -181,7 +182,7 @@ static conic_status composite_here(frame *f) {
 }
 
 static conic_status composite_on_device(const frame *f) {
-  const conic_gaussian_composition composition = {.rules = f->view.rules,
+  const conic_gaussian_composition composition = {.rules = &f->rules,
                                                   .n_drawn = f->n,
                                                   .n = f->set->count,
                                                   .footprints = f->footprints,
@@ -244,7 +245,7 @@ static conic_status check_center(conic_context *context, const conic_gaussian_op
                                  const conic_camera *camera) {
   static const double slack_px = 1e-6; /* of a scaled camera */
   double across = camera->cx - 0.5 * camera->width, down = camera->cy - 0.5 * camera->height;
-  if (!conic_gaussian_rules_of(options->profile)->takes_middle || options->ignores_center ||
+  if (!conic_profile_row_of(options->profile)->takes_middle || options->ignores_center ||
       (fabs(across) <= slack_px && fabs(down) <= slack_px))
     return CONIC_OK;
   return conic_fail(context, CONIC_ERROR_ARGUMENT,
@@ -301,7 +302,8 @@ static conic_status set_up_scene(frame *f) {
 static void look_at_scene(frame *f, conic_isa isa) {
   const conic_gaussian_options *own = &f->options;
   const conic_camera *camera = &f->camera;
-  f->view.rules = conic_gaussian_rules_of(own->profile);
+  f->view.rules = conic_profile_row_of(own->profile);
+  f->rules = conic_gaussian_rules_of(f->view.rules);
   f->view.prefilter = own->prefilter;
   f->view.is_parallel = camera->kind == CONIC_CAMERA_ORTHOGRAPHIC;
   f->view.rays = is_affine(camera) ? NULL : &f->view_rays;
@@ -321,7 +323,7 @@ conic_status conic_gaussian_picture_begin(conic_context *context, const conic_ga
   conic_isa isa;
   *picture = NULL;
   conic_gaussian_options_init(&own);
-  if (!gaussians || !camera || (options && !conic_options_take(&own, options)) || !conic_gaussian_rules_of(own.profile))
+  if (!gaussians || !camera || (options && !conic_options_take(&own, options)) || !conic_profile_row_of(own.profile))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "gaussians: an argument is null, or there is no such profile");
   conic_status status = check_sight(context, camera, &own);
   if (status == CONIC_OK)

@@ -1,52 +1,17 @@
-/* What distinguishes the profiles; docs/reference/gaussians.md has the same table. */
+/* What pixels need of a profile (core/splats/gaussian_profile.h), in floats, as devices have it, too. */
 #pragma once
 
+#include "core/splats/gaussian_profile.h"
 #ifdef CONIC_ON_DEVICE
 #include "conic/image.h"
-#else
-#include "conic/gaussian_render.h"
 #endif
-
-/* How a Gaussian meets a pixel. */
-typedef enum conic_gaussian_shape {
-  CONIC_SHAPE_ELLIPSE = 0,  /* an ellipse on the screen, by the Jacobian of the projection at the mean */
-  CONIC_SHAPE_RAY = 1,      /* along the pixel's ray */
-  CONIC_SHAPE_DISC = 2,     /* where the ray meets the plane of a 2D Gaussian, or a dot on the screen */
-  CONIC_SHAPE_FILTERED = 3, /* along the ray under the pixel's filter: of profiles of CONIC_SHAPE_RAY, as is the next */
-  CONIC_SHAPE_SIGHT = 4,    /* along the ray of a camera whose rays are not affine on the screen */
-  CONIC_N_SHAPES
-} conic_gaussian_shape;
-
-typedef enum conic_gaussian_coverage {
-  CONIC_COVERAGE_ALPHA = 0, /* wherever alpha is large enough */
-  CONIC_COVERAGE_TILES = 1, /* in the tiles of 16 × 16 pixels that meet a square about the mean */
-  CONIC_COVERAGE_BOX = 2    /* in the tiles of 16 × 16 pixels that meet a box */
-} conic_gaussian_coverage;
 
 typedef struct conic_gaussian_rules {
   conic_gaussian_shape shape;
-  conic_gaussian_coverage coverage;
-  double near_z;
-  int is_beyond_near; /* the mean must be beyond near, not at it */
-  float alpha_most, alpha_least;
-  float stop;                /* compositing ends before T would come below; 0: never */
-  int is_beyond_stop;        /* or to it */
-  double dilation;           /* px² that are added to the variance */
-  double compensation_least; /* the opacity is multiplied by √max(this, det/det′); negative: it is not */
-  double slope_margin;       /* x/z and y/z of the Jacobian are clamped so far beyond the picture, as a share of half
-                                its width; negative: not */
-  float greatest_half_q;     /* nothing lies beyond; 0: no such border */
-  int takes_rotation_as_is;  /* 0: quaternions are normalised; 1: but for those of length 1 up to roundings; 2: none is;
-                                3: likewise, and rays meet the inverse of their matrix, not its transpose */
-  int takes_middle;          /* the middle of the picture in place of the principal point */
-  int orders_by_distance;
-  int has_float_eye;
-  int has_late_median; /* the median is the last with T > ½ before it */
-  double disc_cutoff, disc_extent;
-  float disc_near; /* the least depth of a place on the disc; 0: no such border, and the mean's depth counts */
+  float alpha_most, alpha_least, stop, greatest_half_q, disc_near;
+  int is_beyond_stop, has_late_median;
 } conic_gaussian_rules;
 
 #ifndef CONIC_ON_DEVICE
-/* Null for a number that is no profile. */
-const conic_gaussian_rules *conic_gaussian_rules_of(conic_gaussian_profile profile);
+conic_gaussian_rules conic_gaussian_rules_of(const conic_profile_row *row);
 #endif

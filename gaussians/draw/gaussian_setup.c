@@ -76,12 +76,11 @@ static void take_reference(const conic_gaussian_view *view, double x, double y, 
 }
 
 /* Twice the logarithm of how much the opacity is above the least alpha: beyond this q nothing is. 0: nowhere. */
-static double reach_of(const conic_gaussian_rules *rules, double opacity) {
-  if (rules->greatest_half_q > 0.0f)
-    return 2.0 * (double)rules->greatest_half_q;
-  if (!(opacity >= (double)rules->alpha_least))
-    return 0.0;
-  return 2.0 * conic_logarithm(opacity / (double)rules->alpha_least) + reach_slack;
+static double reach_of(const conic_profile_row *rules, double opacity) {
+  const double least = (double)(float)rules->alpha_least;
+  if (rules->greatest_half_q > 0.0)
+    return 2.0 * rules->greatest_half_q;
+  return opacity >= least ? 2.0 * conic_logarithm(opacity / least) + reach_slack : 0.0;
 }
 
 /* Half of it, with room for roundings. Where the exponential ends at e⁻⁸⁰, it never falls below what is composited. */
@@ -114,7 +113,7 @@ static double round_up(double value) {
 /* Whether a Gaussian is so far beside the picture that its ellipse cannot come to it, nor its ellipsoid, which is
  * before the eye: taken for a ball of its largest scale, a tenth larger than it is, and opaque. */
 static int is_far_beside(const conic_gaussian_view *view, const conic_gaussian_placed *p) {
-  const conic_gaussian_rules *rules = view->rules;
+  const conic_profile_row *rules = view->rules;
   const double focal[2] = {view->camera->fx, view->camera->fy}, z = p->mean[2];
   const double size[2] = {view->camera->width, view->camera->height}, most_reach = 11.2;
   double scale = p->scale[0] > p->scale[1] ? p->scale[0] : p->scale[1];
@@ -137,7 +136,7 @@ static int is_far_beside(const conic_gaussian_view *view, const conic_gaussian_p
 
 static conic_gaussian_fate set_up_ellipse(const conic_gaussian_view *view, conic_gaussian_placed *p,
                                           conic_gaussian_footprint *f) {
-  const conic_gaussian_rules *rules = view->rules;
+  const conic_profile_row *rules = view->rules;
   const conic_camera *camera = view->camera;
   const double focal[2] = {camera->fx, camera->fy}, size[2] = {camera->width, camera->height};
   const double h = rules->dilation;
@@ -394,7 +393,7 @@ static int find_disc_box(const conic_gaussian_view *view, const conic_gaussian_p
 
 static conic_gaussian_fate set_up_disc(const conic_gaussian_view *view, conic_gaussian_placed *p,
                                        conic_gaussian_footprint *f, conic_gaussian_ray *ray) {
-  const conic_gaussian_rules *rules = view->rules;
+  const conic_profile_row *rules = view->rules;
   const double size[2] = {view->camera->width, view->camera->height}, reach = reach_of(rules, p->opacity);
   double place[2], extent[2], least[2], most[2], unit_of;
   if (!(reach > 0.0) || !find_disc_box(view, p, place, extent) || !conic_gaussian_project(view, p, reach, least, most))
@@ -436,7 +435,7 @@ static void choose_normal(const conic_gaussian_view *view, const conic_gaussian_
 conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const conic_gaussians *gaussians, size_t i,
                                           conic_gaussian_footprint *f, float *key, conic_gaussian_ray *ray,
                                           conic_gaussian_filter *filter, conic_gaussian_sight *sight, float normal[3]) {
-  const conic_gaussian_rules *rules = view->rules;
+  const conic_profile_row *rules = view->rules;
   conic_gaussian_placed p;
   double from_eye[3], q[4], squares;
   if (!place_in_camera(view, gaussians, i, &p, from_eye) || !((squares = read_shape(gaussians, i, q, &p)) > 0.0))

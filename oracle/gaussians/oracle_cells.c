@@ -172,7 +172,7 @@ static int may_reach(const oracle_uncertain *g, double x, double y) {
 
 /* Those of a cell that may cover a place, in their order. */
 static size_t gather_meetings(const oracle_bound_request *b, cell_worker *w, size_t n, double x, double y) {
-  const int is_sorted = b->doubting.view->rules->form != ORACLE_FORM_RAY;
+  const int is_sorted = b->doubting.view->rules->shape != CONIC_SHAPE_RAY;
   double T = 1.0, latest = -INFINITY;
   size_t n_meetings = 0;
   for (size_t i = 0; i < n; i++) {

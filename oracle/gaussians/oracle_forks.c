@@ -291,7 +291,7 @@ typedef struct outcomes {
 static outcomes foresee(const fork_job *j, size_t i, const fork_state *s) {
   const oracle_meeting *m = &j->meetings[i];
   const double stop = j->d->limits.stop;
-  const int at = j->d->view->rules->stop_is_left_out;
+  const int at = j->d->view->rules->is_beyond_stop;
   range rest = rest_of_light(j, range_of(m->alpha[0], m->alpha_v, m->alpha[1]));
   range after = multiply_ranges(s->T, rest);
   outcomes o = {.skips = (m->doubts & ~(1u << CONIC_DOUBT_MOST)) != 0, .skipped = !m->covers || s->has_ended};

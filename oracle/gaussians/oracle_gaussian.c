@@ -3,40 +3,7 @@
 
 #include "oracle/oracle_math.h"
 
-#define LEAST_ALPHA (1.0 / 255.0)
 #define UNIT_SLACK (1.0 / 1048576.0)
-#define AS_GSPLAT .near_z = 0.01, .alpha_least = LEAST_ALPHA, .stop = 1e-4, .stop_is_left_out = 1
-
-const oracle_gaussian_rules *conic_oracle_gaussian_rules(conic_gaussian_profile profile) {
-  static const oracle_gaussian_rules rules[CONIC_N_GAUSSIAN_PROFILES] = {
-      [CONIC_PROFILE_EXACT] = {.form = ORACLE_FORM_RAY, .alpha_most = 0.99, .alpha_least = LEAST_ALPHA, .stop = 1e-4},
-      [CONIC_PROFILE_INRIA_2023] = {.near_z = 0.2,
-                                    .near_is_left_out = 1,
-                                    .alpha_most = 0.99,
-                                    .alpha_least = LEAST_ALPHA,
-                                    .stop = 1e-4,
-                                    .dilation = 0.3,
-                                    .compensation_least = -1.0,
-                                    .is_inria = 1},
-      [CONIC_PROFILE_GSPLAT_1_5] = {AS_GSPLAT, .alpha_most = 0.999, .dilation = 0.3, .compensation_least = -1.0},
-      [CONIC_PROFILE_GSPLAT_1_5_AA] = {AS_GSPLAT, .alpha_most = 0.999, .dilation = 0.3, .compensation_least = 0.0},
-      [CONIC_PROFILE_GSPLAT_1_6] = {AS_GSPLAT, .alpha_most = 0.99, .dilation = 0.3, .compensation_least = -1.0},
-      [CONIC_PROFILE_GSPLAT_1_6_AA] = {AS_GSPLAT, .alpha_most = 0.99, .dilation = 0.3, .compensation_least = 2.5e-5},
-      [CONIC_PROFILE_2DGS_2024] = {.form = ORACLE_FORM_DISC,
-                                   .near_z = 0.2,
-                                   .near_is_left_out = 1,
-                                   .alpha_most = 0.99,
-                                   .alpha_least = LEAST_ALPHA,
-                                   .stop = 1e-4,
-                                   .is_inria = 1,
-                                   .disc_cutoff = 3.0,
-                                   .disc_near = 0.2},
-      [CONIC_PROFILE_2DGS_GSPLAT] = {AS_GSPLAT, .form = ORACLE_FORM_DISC, .near_is_left_out = 1, .alpha_most = 0.99,
-                                     .disc_cutoff = 1.0, .disc_extent = 3.33},
-      [CONIC_PROFILE_KHR_2026] = {.alpha_most = 1.0, .compensation_least = -1.0, .cutoff = 9.0, .is_by_distance = 1},
-  };
-  return (unsigned)profile < CONIC_N_GAUSSIAN_PROFILES ? &rules[profile] : NULL;
-}
 
 void conic_oracle_rotation(const double q[4], double r[3][3]) {
   double w = q[0], x = q[1], y = q[2], z = q[3];
@@ -46,13 +13,13 @@ void conic_oracle_rotation(const double q[4], double r[3][3]) {
   memcpy(r, rows, sizeof rows);
 }
 
-double conic_oracle_quaternion(const oracle_gaussian_rules *rules, const conic_gaussians *set, size_t i, double q[4]) {
+double conic_oracle_quaternion(const conic_profile_row *rules, const conic_gaussians *set, size_t i, double q[4]) {
   double length = 0.0;
   for (int k = 0; k < 4; k++) {
     q[k] = (double)set->rotation[k][i];
     length += q[k] * q[k];
   }
-  length = rules->is_inria && fabs(length - 1.0) < UNIT_SLACK ? 1.0 : sqrt(length);
+  length = rules->takes_rotation_as_is && fabs(length - 1.0) < UNIT_SLACK ? 1.0 : sqrt(length);
   for (int k = 0; k < 4; k++)
     q[k] /= length;
   return length;
@@ -81,7 +48,7 @@ static int turn_axes(const oracle_gaussian_view *view, const conic_gaussians *se
 /* The direction of the shortest axis, of a disc the third, turned towards the eye. */
 static void pick_normal(const oracle_gaussian_view *view, const double world[3][3], oracle_gaussian *g) {
   int axis = 2;
-  if (view->rules->form != ORACLE_FORM_DISC && !g->is_flat)
+  if (view->rules->shape != CONIC_SHAPE_DISC && !g->is_flat)
     for (int k = 1; k >= 0; k--)
       axis = g->scale[k] < g->scale[axis] ? k : axis;
   int is_parallel = view->camera->kind == CONIC_CAMERA_ORTHOGRAPHIC;
@@ -111,17 +78,16 @@ static void cover_tiles(const oracle_gaussian_view *view, double radius, oracle_
 }
 
 static int place_ellipse(const oracle_gaussian_view *view, oracle_gaussian *g) {
-  const oracle_gaussian_rules *rules = view->rules;
+  const conic_profile_row *rules = view->rules;
   const conic_camera *camera = view->camera;
   const double focal[2] = {camera->fx, camera->fy}, size[2] = {camera->width, camera->height}, z = g->mean[2];
   double rows[2][3], d = rules->dilation;
   for (int axis = 0; axis < 2; axis++) {
     double slope = g->mean[axis] / z, half = 0.5 * size[axis] / focal[axis], c = view->center_px[axis];
     g->place_px[axis] = focal[axis] * slope + c;
-    if (rules->is_inria)
-      slope = clamp(slope, -1.3 * half, 1.3 * half);
-    else if (rules->dilation > 0.0)
-      slope = clamp(slope, -(c / focal[axis] + 0.3 * half), (size[axis] - c) / focal[axis] + 0.3 * half);
+    const double beyond = rules->slope_margin * half;
+    if (beyond >= 0.0)
+      slope = clamp(slope, -(c / focal[axis] + beyond), (size[axis] - c) / focal[axis] + beyond);
     for (int k = 0; k < 3; k++)
       rows[axis][k] = focal[axis] / z * (g->axes[k][axis] - slope * g->axes[k][2]);
   }
@@ -137,7 +103,7 @@ static int place_ellipse(const oracle_gaussian_view *view, oracle_gaussian *g) {
   g->form[0] = wide.yy / after;
   g->form[1] = -wide.xy / after;
   g->form[2] = wide.xx / after;
-  if (rules->is_inria) {
+  if (rules->coverage == CONIC_COVERAGE_TILES) {
     double mean = 0.5 * (wide.xx + wide.yy);
     cover_tiles(view, ceil(3.0 * sqrt(mean + sqrt(oracle_max(0.1, mean * mean - after)))), g);
   }
@@ -146,7 +112,7 @@ static int place_ellipse(const oracle_gaussian_view *view, oracle_gaussian *g) {
 
 /* The centre of the box of the disc's outline at the cutoff, and the pixels that the profile looks at. */
 static int place_disc(const oracle_gaussian_view *view, oracle_gaussian *g) {
-  const oracle_gaussian_rules *rules = view->rules;
+  const conic_profile_row *rules = view->rules;
   const conic_camera *camera = view->camera;
   const double columns[3][3] = {{g->axes[0][0], g->axes[0][1], g->axes[0][2]},
                                 {g->axes[1][0], g->axes[1][1], g->axes[1][2]},
@@ -170,7 +136,7 @@ static int place_disc(const oracle_gaussian_view *view, oracle_gaussian *g) {
     g->place_px[axis] = place;
     extent[axis] = sqrt(oracle_max(1e-4, place * place - square));
   }
-  if (rules->is_inria) {
+  if (rules->coverage == CONIC_COVERAGE_TILES) {
     cover_tiles(view, ceil(oracle_max(oracle_max(extent[0], extent[1]), 3.0 * 0.707106)), g);
     return 1;
   }
@@ -217,7 +183,7 @@ static void color_towards_eye(const oracle_gaussian_view *view, const conic_gaus
 
 void conic_oracle_gaussian_place(const oracle_gaussian_view *view, const conic_gaussians *set, size_t i,
                                  oracle_gaussian *g) {
-  const oracle_gaussian_rules *rules = view->rules;
+  const conic_profile_row *rules = view->rules;
   double mean[3], world[3][3];
   memset(g, 0, sizeof *g);
   g->index = (uint32_t)i;
@@ -233,20 +199,20 @@ void conic_oracle_gaussian_place(const oracle_gaussian_view *view, const conic_g
     if (!oracle_is_finite(g->mean[row]))
       return;
   }
-  int is_near = g->mean[2] < rules->near_z || (rules->near_is_left_out && g->mean[2] == rules->near_z);
+  int is_near = g->mean[2] < rules->near_z || (rules->is_beyond_near && g->mean[2] == rules->near_z);
   if (!oracle_is_finite(g->opacity) || !turn_axes(view, set, i, world, g) ||
-      (rules->form != ORACLE_FORM_RAY && (is_near || !(g->mean[2] > 0.0))))
+      (rules->shape != CONIC_SHAPE_RAY && (is_near || !(g->mean[2] > 0.0))))
     return;
   pick_normal(view, world, g);
   color_towards_eye(view, set, mean, i, g);
-  g->key = (float)(rules->is_by_distance || view->camera->kind == CONIC_CAMERA_FISHEYE ||
+  g->key = (float)(rules->orders_by_distance || view->camera->kind == CONIC_CAMERA_FISHEYE ||
                            view->camera->kind == CONIC_CAMERA_EQUIRECTANGULAR
                        ? oracle_length(g->mean)
                        : g->mean[2]);
   g->is_drawn = oracle_is_finite(g->color[0] + g->color[1] + g->color[2]);
-  if (rules->form == ORACLE_FORM_ELLIPSE)
+  if (rules->shape == CONIC_SHAPE_ELLIPSE)
     g->is_drawn &= place_ellipse(view, g);
-  if (rules->form == ORACLE_FORM_DISC)
+  if (rules->shape == CONIC_SHAPE_DISC)
     g->is_drawn &= place_disc(view, g);
   if (view->prefilter > 0.0)
     g->is_drawn &= conic_oracle_gaussian_box(view, g);
@@ -311,7 +277,7 @@ static double disc_form(const oracle_gaussian_view *view, const oracle_gaussian 
 
 double conic_oracle_gaussian_alpha(const oracle_gaussian_view *view, const oracle_gaussian *g, double x, double y,
                                    double *z) {
-  const oracle_gaussian_rules *rules = view->rules;
+  const conic_profile_row *rules = view->rules;
   double q, width, share = 1.0;
   if (x < g->box_px[0][0] || x >= g->box_px[1][0] || y < g->box_px[0][1] || y >= g->box_px[1][1])
     return 0.0;
@@ -319,16 +285,16 @@ double conic_oracle_gaussian_alpha(const oracle_gaussian_view *view, const oracl
   if (view->prefilter > 0.0) {
     if (!conic_oracle_gaussian_filtered(view, g, x, y, &q, z, &share))
       return 0.0;
-  } else if (rules->form == ORACLE_FORM_RAY) {
+  } else if (rules->shape == CONIC_SHAPE_RAY) {
     if (!conic_oracle_gaussian_along(view, g, x, y, &q, z, &width))
       return 0.0;
-  } else if (rules->form == ORACLE_FORM_DISC) {
+  } else if (rules->shape == CONIC_SHAPE_DISC) {
     q = disc_form(view, g, x, y, z);
   } else {
     double dx = g->place_px[0] - x, dy = g->place_px[1] - y;
     q = g->form[0] * dx * dx + 2.0 * g->form[1] * dx * dy + g->form[2] * dy * dy;
   }
-  if (!(q >= 0.0) || (rules->cutoff > 0.0 && q > rules->cutoff))
+  if (!(q >= 0.0) || (rules->greatest_half_q > 0.0 && q > 2.0 * rules->greatest_half_q))
     return 0.0;
   double alpha = oracle_min(rules->alpha_most, g->opacity * share * conic_oracle_exp(-0.5 * q));
   return alpha >= rules->alpha_least ? alpha : 0.0;

@@ -2,29 +2,7 @@
 #pragma once
 
 #include "conic/gaussian_oracle.h"
-
-typedef enum oracle_gaussian_form {
-  ORACLE_FORM_ELLIPSE = 0, /* projected by the Jacobian at the mean */
-  ORACLE_FORM_DISC = 1,    /* a 2D Gaussian where the ray meets its plane, or as a dot on the screen */
-  ORACLE_FORM_RAY = 2      /* the greatest response along the ray */
-} oracle_gaussian_form;
-
-/* What distinguishes the profiles: the table of docs/reference/gaussians.md. */
-typedef struct oracle_gaussian_rules {
-  oracle_gaussian_form form;
-  double near_z;
-  int near_is_left_out; /* a mean at near itself is */
-  double alpha_most, alpha_least, stop;
-  int stop_is_left_out;      /* at `stop` itself, as below it, nothing more is composited */
-  double dilation;           /* px² */
-  double compensation_least; /* of det/det′; negative: no compensation */
-  int is_inria;              /* tiles of 16 px as its coverage, quaternions as they are, the centre of the picture */
-  double cutoff;             /* of q, the greatest; 0: none */
-  int is_by_distance;        /* the order of the means */
-  double disc_cutoff, disc_extent, disc_near;
-} oracle_gaussian_rules;
-
-const oracle_gaussian_rules *conic_oracle_gaussian_rules(conic_gaussian_profile profile);
+#include "core/splats/gaussian_profile.h"
 
 typedef struct oracle_ray {
   double origin[3], direction[3];
@@ -33,10 +11,10 @@ typedef struct oracle_ray {
 
 typedef struct oracle_gaussian_view {
   const conic_camera *camera;
-  const oracle_gaussian_rules *rules;
+  const conic_profile_row *rules;
   double eye[3];       /* from which colours are seen */
   double center_px[2]; /* the principal point, as the profile has it */
-  double prefilter;    /* px²; of ORACLE_FORM_RAY */
+  double prefilter;    /* px²; of CONIC_SHAPE_RAY */
   oracle_ray *rays;    /* of the pixels' centres, where it takes long to find them; else null */
 } oracle_gaussian_view;
 
@@ -62,8 +40,7 @@ void conic_oracle_gaussian_place(const oracle_gaussian_view *view, const conic_g
                                  oracle_gaussian *g);
 
 /* Its quaternion as the profile takes it; returns the length that it was divided by. */
-double conic_oracle_quaternion(const oracle_gaussian_rules *rules, const conic_gaussians *gaussians, size_t i,
-                               double q[4]);
+double conic_oracle_quaternion(const conic_profile_row *rules, const conic_gaussians *gaussians, size_t i, double q[4]);
 /* The rotation of a quaternion of unit length. */
 void conic_oracle_rotation(const double q[4], double r[3][3]);
 /* Its harmonics' (degree + 1)² × 3 numbers. */

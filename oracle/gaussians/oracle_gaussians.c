@@ -153,13 +153,13 @@ static void sort_gaussians(job *j) {
 
 /* Composites what covers the pixel, nearest first. */
 static void composite(const job *j, const covering *coverings, size_t n, size_t pixel) {
-  const oracle_gaussian_rules *rules = j->view.rules;
+  const conic_profile_row *rules = j->view.rules;
   conic_gaussian_reference *r = j->reference;
   double T = 1.0, heaviest = 0.0, sum_of_z = 0.0, sum = 0.0, *rgb = &r->rgb[3 * pixel];
   for (size_t i = 0; i < n; i++) {
     const oracle_gaussian *g = coverings[i].gaussian;
     double alpha = coverings[i].alpha, z = coverings[i].z, w = alpha * T, rest = T * (1.0 - alpha);
-    if (rest < rules->stop || (rules->stop_is_left_out && rest == rules->stop))
+    if (rest < rules->stop || (rules->is_beyond_stop && rest == rules->stop))
       break;
     for (int c = 0; c < 3; c++) {
       rgb[c] += w * g->color[c];
@@ -168,7 +168,7 @@ static void composite(const job *j, const covering *coverings, size_t n, size_t 
     sum += w;
     sum_of_z += w * z;
     r->inverse_z[pixel] += w / z;
-    if (rules->disc_near > 0.0 ? T > 0.5 : T > 0.5 && rest <= 0.5)
+    if (T > 0.5 && (rules->has_late_median || rest <= 0.5))
       r->median_z[pixel] = z;
     if (w > heaviest) {
       heaviest = w;
@@ -192,7 +192,7 @@ static void composite_pixel(const job *j, gaussian_worker *w, double x, double y
     c->key = (float)c->z;
     n += c->alpha > 0.0;
   }
-  if (j->view.rules->form == ORACLE_FORM_RAY)
+  if (j->view.rules->shape == CONIC_SHAPE_RAY)
     qsort(w->coverings, n, sizeof *w->coverings, compare_coverings);
   composite(j, w->coverings, n, pixel);
 }
@@ -294,15 +294,15 @@ static void release_job(job *j) {
 void conic_oracle_gaussian_look(const conic_camera *camera, conic_gaussian_profile profile,
                                 oracle_gaussian_view *view) {
   view->camera = camera;
-  view->rules = conic_oracle_gaussian_rules(profile);
+  view->rules = conic_profile_row_of(profile);
   for (int axis = 0; axis < 3; axis++) {
     double eye = 0.0;
     for (int row = 0; row < 3; row++)
       eye -= camera->cam_from_world[row][axis] * camera->cam_from_world[row][3];
-    view->eye[axis] = view->rules->form == ORACLE_FORM_RAY ? eye : (double)(float)eye;
+    view->eye[axis] = view->rules->has_float_eye ? (double)(float)eye : eye;
   }
-  view->center_px[0] = view->rules->is_inria ? 0.5 * camera->width : camera->cx;
-  view->center_px[1] = view->rules->is_inria ? 0.5 * camera->height : camera->cy;
+  view->center_px[0] = view->rules->takes_middle ? 0.5 * camera->width : camera->cx;
+  view->center_px[1] = view->rules->takes_middle ? 0.5 * camera->height : camera->cy;
 }
 
 static conic_status draw_gaussians_again(job *j) {
@@ -335,7 +335,7 @@ conic_status conic_gaussian_oracle_render(conic_context *context, const conic_ga
   conic_gaussian_options_init(&own);
   memset(reference, 0, sizeof *reference);
   if ((options && !conic_options_take(&own, options)) || (unsigned)question > CONIC_GAUSSIAN_VOLUME ||
-      !conic_oracle_gaussian_rules(own.profile))
+      !conic_profile_row_of(own.profile))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "oracle: no such options, profile or question");
   if (!(own.prefilter >= 0.0 && own.prefilter <= 1e4) || (own.prefilter > 0.0 && own.profile != CONIC_PROFILE_EXACT))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "oracle: a prefilter of 0 to 10000 is of the profile exact");

@@ -96,7 +96,7 @@ CONIC_DEFINE_ORDER_BY_TWO(compare_met, oracle_met, key, index)
 
 /* What covers the pixel, in its order. */
 static size_t meet_all_shown(const oracle_gradient_job *j, gradient_worker *w, size_t n, size_t x, size_t y) {
-  const int is_sorted = j->view.rules->form != ORACLE_FORM_RAY;
+  const int is_sorted = j->view.rules->shape != CONIC_SHAPE_RAY;
   size_t n_met = 0;
   double T = 1.0;
   for (size_t i = 0; i < n; i++) {

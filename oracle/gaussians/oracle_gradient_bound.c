@@ -195,7 +195,7 @@ static size_t list_covering(const pixel_bound *p, size_t asked) {
 }
 
 static void follow_least_and_most(pixel_bound *p, size_t i) {
-  const oracle_gaussian_rules *rules = p->j->view.rules;
+  const conic_profile_row *rules = p->j->view.rules;
   const bounded_met *b = &p->v->all[i];
   const oracle_shown *s = p->w->shown[b->met.entry];
   const double alpha = s->opacity * b->met.response, off = b->error.rho * alpha + UNIT * rules->alpha_least;
@@ -232,7 +232,7 @@ static void follow_order(pixel_bound *p) {
 
 /* Where T is at its end but for roundings: without the one before that, or with the one behind. */
 static void follow_end(pixel_bound *p, size_t n) {
-  const oracle_gaussian_rules *rules = p->j->view.rules;
+  const conic_profile_row *rules = p->j->view.rules;
   const size_t n_covering = list_covering(p, (size_t)-1);
   double T = 1.0;
   for (size_t i = 0; i < n_covering && rules->stop > 0.0; i++) {

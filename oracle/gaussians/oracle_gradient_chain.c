@@ -26,18 +26,16 @@ static void find_slope_again(const oracle_gaussian_view *view, const oracle_gaus
                              int axis, ellipse_steps *s) {
   const double f = s->focal[axis], size = axis ? view->camera->height : view->camera->width;
   const double half = 0.5 * size / f, c = view->center_px[axis], slope = g->mean[axis] / g->mean[2];
+  const double beyond = view->rules->slope_margin * half;
   double low = -INFINITY, high = INFINITY;
-  if (view->rules->is_inria) {
-    low = -1.3 * half;
-    high = 1.3 * half;
-  } else if (view->rules->dilation > 0.0) {
-    low = -(c / f + 0.3 * half);
-    high = (size - c) / f + 0.3 * half;
+  if (beyond >= 0.0) {
+    low = -(c / f + beyond);
+    high = (size - c) / f + beyond;
   }
   s->slope[axis] = oracle_min(oracle_max(slope, low), high);
   s->is_inside[axis] = slope >= low && slope <= high;
   s->by_focal[axis] = s->is_inside[axis] ? 0.0 : -s->slope[axis] / f;
-  s->by_center[axis] = s->is_inside[axis] || view->rules->is_inria ? 0.0 : -1.0 / f;
+  s->by_center[axis] = s->is_inside[axis] || view->rules->takes_middle ? 0.0 : -1.0 / f;
   double off = model ? 16.0 * model->setup_roundoff * (1.0 + fabs(slope)) : 0.0;
   s->is_near_border[axis] = fabs(slope - low) <= off || fabs(slope - high) <= off;
 }
@@ -264,7 +262,7 @@ void conic_oracle_gradient_chain(const oracle_gaussian_view *view, const oracle_
   conic_oracle_gaussian_place(view, set, i, &g);
   for (int axis = 0; axis < 3; axis++)
     mean[axis] = set->origin[axis] + (double)set->position[axis][i];
-  if (view->rules->form == ORACLE_FORM_RAY)
+  if (view->rules->shape == CONIC_SHAPE_RAY)
     ray_back(view, &g, sums, &space);
   else
     ellipse_back(view, &g, (double)set->opacity[i], model, sums, &space, &to->doubts);
@@ -274,6 +272,6 @@ void conic_oracle_gradient_chain(const oracle_gaussian_view *view, const oracle_
   to->opacity = space.opacity;
   for (int axis = 0; axis < 2; axis++) {
     camera->focal[axis] += space.focal[axis];
-    camera->center[axis] += view->rules->is_inria ? 0.0 : space.center[axis];
+    camera->center[axis] += view->rules->takes_middle ? 0.0 : space.center[axis];
   }
 }

@@ -17,8 +17,8 @@ CONIC_DEFINE_NAMES(conic_gradient_kind_name, conic_gradient_kind, CONIC_N_GRADIE
                    "opacity", "sh")
 
 int conic_gradient_has_profile(conic_gaussian_profile profile) {
-  const oracle_gaussian_rules *rules = conic_oracle_gaussian_rules(profile);
-  return rules && rules->form != ORACLE_FORM_DISC;
+  const conic_profile_row *rules = conic_profile_row_of(profile);
+  return rules && rules->shape != CONIC_SHAPE_DISC;
 }
 
 void conic_gaussian_gradient_release(conic_context *context, conic_gaussian_gradient *gradient) {
@@ -67,7 +67,7 @@ static void hand_out(const oracle_gradient_job *j, size_t i, const oracle_parame
   const double o = (double)set->opacity[i];
   g->opacity[i] = p->opacity * (g->is_raw ? o * (1.0 - o) : 1.0);
   memcpy(g->sh + i * n_sh, p->sh, n_sh * sizeof *p->sh);
-  for (int axis = 0; axis < 2 && j->view.rules->form == ORACLE_FORM_ELLIPSE; axis++)
+  for (int axis = 0; axis < 2 && j->view.rules->shape == CONIC_SHAPE_ELLIPSE; axis++)
     g->place[axis][i] = j->totals[i][BY_PLACE + axis];
   g->doubt[i] |= p->doubts;
 }

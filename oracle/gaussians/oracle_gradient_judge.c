@@ -267,7 +267,7 @@ static void add_setup_in_float(const oracle_doubting *d, size_t i, const oracle_
   for (int axis = 0; axis < 3; axis++)
     far += fabs(camera->cam_from_world[2][axis] * (d->set->origin[axis] + (double)d->set->position[axis][i]));
   to->z += unit * far;
-  to->key += unit * (d->view->rules->is_by_distance ? oracle_length(placed.mean) + far : far);
+  to->key += unit * (d->view->rules->orders_by_distance ? oracle_length(placed.mean) + far : far);
   for (int axis = 0; axis < 2; axis++)
     to->place[axis] += unit * (fabs(placed.place_px[axis]) + size) * (1.0 + far / oracle_max(placed.mean[2], 1e-30));
   const double least = d->view->rules->compensation_least, o = fabs((double)d->set->opacity[i]);
@@ -317,7 +317,7 @@ static conic_status prepare_judging(oracle_gradient_job *j, oracle_entry *e) {
 
 static conic_status check_theirs(conic_context *context, const conic_gaussians *set, const conic_gaussian_options *own,
                                  const conic_gaussian_gradient *theirs) {
-  if (conic_oracle_gaussian_rules(own->profile)->form != ORACLE_FORM_ELLIPSE)
+  if (conic_profile_row_of(own->profile)->shape != CONIC_SHAPE_ELLIPSE)
     return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "judge: gradients of the profile %s are not judged",
                       conic_gaussian_profile_name(own->profile));
   if (theirs->count != set->count)

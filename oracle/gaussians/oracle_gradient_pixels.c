@@ -24,7 +24,7 @@ static void reach_ellipse(const oracle_gaussian_view *view, const oracle_gaussia
   double low[2], high[2];
   for (int axis = 0; axis < 2; axis++) { /* a slope that is clamped lies within 1.3 of the picture's own */
     double slope = fabs(g->mean[axis] / g->mean[2]), variance = view->rules->dilation;
-    if (view->rules->dilation > 0.0)
+    if (view->rules->slope_margin >= 0.0)
       slope = oracle_min(slope, 2.0 * (size[axis] + fabs(view->center_px[axis])) / focal[axis]);
     for (int k = 0; k < 3; k++) {
       double row = focal[axis] / g->mean[2] * (fabs(g->axes[k][axis]) + slope * fabs(g->axes[k][2]));
@@ -67,11 +67,11 @@ static void map_to_ball(const oracle_gaussian *g, oracle_shown *shown) {
 }
 
 int conic_oracle_show(const oracle_gaussian_view *view, const conic_gaussians *set, size_t i, oracle_shown *shown) {
-  const oracle_gaussian_rules *rules = view->rules;
+  const conic_profile_row *rules = view->rules;
   oracle_gaussian g;
   conic_oracle_gaussian_place(view, set, i, &g);
   *shown = (oracle_shown){.index = (uint32_t)i, .key = g.key, .opacity = g.opacity, .z = g.mean[2]};
-  shown->most_q = rules->cutoff > 0.0 ? rules->cutoff : -1.0;
+  shown->most_q = rules->greatest_half_q > 0.0 ? 2.0 * rules->greatest_half_q : -1.0;
   if (rules->alpha_least > 0.0 && g.opacity >= 0.99 * rules->alpha_least)
     shown->most_q = 2.0 * conic_oracle_log(g.opacity / rules->alpha_least) + 0.03;
   if (!g.is_drawn || !(shown->most_q >= 0.0))
@@ -79,7 +79,7 @@ int conic_oracle_show(const oracle_gaussian_view *view, const conic_gaussians *s
   memcpy(shown->color, g.color, sizeof shown->color);
   memcpy(shown->place, g.place_px, sizeof shown->place);
   memcpy(shown->form, g.form, sizeof shown->form);
-  if (rules->form == ORACLE_FORM_RAY) {
+  if (rules->shape == CONIC_SHAPE_RAY) {
     map_to_ball(&g, shown);
     reach_ray(view, &g, shown);
   } else
@@ -117,10 +117,10 @@ static double meet_shown_ray(const oracle_gaussian_view *view, const oracle_show
 
 int conic_oracle_meet_shown(const oracle_gaussian_view *view, const oracle_shown *shown, double x, double y,
                             oracle_met *met) {
-  const oracle_gaussian_rules *rules = view->rules;
+  const conic_profile_row *rules = view->rules;
   double q;
   met->z = shown->z;
-  if (rules->form == ORACLE_FORM_RAY) {
+  if (rules->shape == CONIC_SHAPE_RAY) {
     q = meet_shown_ray(view, shown, x, y, &met->z);
     if (!(met->z > 0.0) || !oracle_is_finite(met->z))
       return 0;
@@ -135,20 +135,20 @@ int conic_oracle_meet_shown(const oracle_gaussian_view *view, const oracle_shown
   met->is_most = alpha > rules->alpha_most;
   met->alpha = met->is_most ? rules->alpha_most : alpha;
   met->index = shown->index;
-  met->key = rules->form == ORACLE_FORM_RAY ? (float)met->z : shown->key;
+  met->key = rules->shape == CONIC_SHAPE_RAY ? (float)met->z : shown->key;
   return met->alpha >= rules->alpha_least ? ORACLE_COVERS : met->alpha >= 0.99 * rules->alpha_least ? ORACLE_NEARLY : 0;
 }
 
 double conic_oracle_gradient_forth(const oracle_gaussian_view *view, const oracle_gradient_pixel *pixel,
                                    const oracle_shown *const *shown, oracle_met *met, size_t *n, double *behind) {
-  const oracle_gaussian_rules *rules = view->rules;
+  const conic_profile_row *rules = view->rules;
   const double *w = pixel->weights;
   double T = 1.0, sum = 0.0, sum_of_z = 0.0, loss = 0.0;
   size_t n_met = 0;
   for (; n_met < *n; n_met++) {
     oracle_met *m = &met[n_met];
     const double rest = T * (1.0 - m->alpha);
-    if (!pixel->goes_on && (rest < rules->stop || (rules->stop_is_left_out && rest == rules->stop)))
+    if (!pixel->goes_on && (rest < rules->stop || (rules->is_beyond_stop && rest == rules->stop)))
       break;
     m->before = T;
     sum += m->alpha * T;
@@ -217,7 +217,7 @@ void conic_oracle_gradient_back(const oracle_gaussian_view *view, const oracle_g
   sums[BY_OPACITY] += met->is_most ? 0.0 : by_alpha * met->response;
   for (int c = 0; c < 3; c++)
     sums[BY_COLOR + c] += pixel->weights[c] * weight;
-  if (view->rules->form == ORACLE_FORM_RAY) {
+  if (view->rules->shape == CONIC_SHAPE_RAY) {
     ray_met_back(view, pixel, shown, met, by_q, sums);
     return;
   }

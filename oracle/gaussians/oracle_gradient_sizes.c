@@ -9,7 +9,7 @@ void conic_oracle_row_sizes(const oracle_gaussian_view *view, const oracle_gauss
   s->focal[1] = view->camera->fy;
   for (int axis = 0; axis < 2; axis++) {
     s->slope[axis] = fabs(g->mean[axis] / g->mean[2]);
-    if (view->rules->dilation > 0.0) /* it is clamped, by less than that */
+    if (view->rules->slope_margin >= 0.0) /* it is clamped, by less than that */
       s->slope[axis] = oracle_min(s->slope[axis], 1.3 * (view->camera->width + view->camera->height) / s->focal[axis]);
     for (int k = 0; k < 3; k++)
       s->rows[axis][k] = s->focal[axis] / g->mean[2] * g->scale[k] * (1.0 + s->slope[axis]);

@@ -10,8 +10,8 @@ conic_status conic_oracle_enter(conic_context *context, const conic_gaussians *g
   conic_gaussian_options_init(&e->options);
   conic_float_model_init(&e->model, CONIC_FLOATS_OWN);
   if (!gaussians || !camera || (options && !conic_options_take(&e->options, options)) ||
-      (model && !conic_options_take(&e->model, model)) || !conic_oracle_gaussian_rules(e->options.profile) ||
-      samples < 1 || samples > CONIC_MAX_SAMPLES)
+      (model && !conic_options_take(&e->model, model)) || !conic_profile_row_of(e->options.profile) || samples < 1 ||
+      samples > CONIC_MAX_SAMPLES)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "judge: no such options, profile, floats or samples");
   if (e->options.prefilter != 0.0)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "judge: a picture under a prefilter is not judged");
@@ -27,14 +27,14 @@ conic_status conic_oracle_enter(conic_context *context, const conic_gaussians *g
   e->fine.cx *= samples;
   e->fine.cy *= samples;
   conic_oracle_gaussian_look(&e->fine, e->options.profile, &e->view);
-  const oracle_gaussian_rules *rules = e->view.rules;
+  const conic_profile_row *rules = e->view.rules;
   e->bounding = (oracle_bound_request){
       .context = context,
       .doubting = {&e->view,
                    &e->model,
                    gaussians,
                    {(double)(float)rules->alpha_least, (double)(float)rules->alpha_most, (double)(float)rules->stop,
-                    0.5 * rules->cutoff, (double)(float)rules->disc_near}},
+                    rules->greatest_half_q, (double)(float)rules->disc_near}},
       .background = e->options.background,
       .samples = samples,
       .width = camera->width,
@@ -67,7 +67,7 @@ static void fill_entry(const oracle_doubting *d, const oracle_meeting *m, listin
   if (!m->covers)
     return;
   double after = run->T * (1.0 - m->alpha_v), stop = d->limits.stop;
-  run->has_ended |= after < stop || (d->view->rules->stop_is_left_out && after == stop);
+  run->has_ended |= after < stop || (d->view->rules->is_beyond_stop && after == stop);
   if (run->has_ended) {
     to->part = CONIC_PART_HIDDEN;
     return;

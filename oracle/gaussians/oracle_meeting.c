@@ -120,7 +120,7 @@ static int is_in_area(const double box[2][2], double x, double y) {
 }
 
 static void ask_all(const oracle_doubting *d, double x, double y, oracle_meeting *m) {
-  const oracle_gaussian_rules *rules = d->view->rules;
+  const conic_profile_row *rules = d->view->rules;
   const oracle_limits *limits = &d->limits;
   const oracle_uncertain *g = m->g;
   int sure = is_in_area(g->sure, x, y), wide = is_in_area(g->wide, x, y);
@@ -129,7 +129,7 @@ static void ask_all(const oracle_doubting *d, double x, double y, oracle_meeting
   if (limits->half_cutoff > 0.0)
     ask_whether(m, CONIC_DOUBT_EDGE, CONIC_PART_OUTSIDE, m->half_q_v <= limits->half_cutoff,
                 m->half_q[0] <= limits->half_cutoff, m->half_q[1] > limits->half_cutoff);
-  if (rules->form == ORACLE_FORM_RAY)
+  if (rules->shape == CONIC_SHAPE_RAY)
     ask_whether(m, CONIC_DOUBT_NEAR, CONIC_PART_NEAR, m->z_v > 0.0, m->z[1] > 0.0, !(m->z[0] > 0.0));
   if (limits->disc_near > 0.0)
     ask_whether(m, CONIC_DOUBT_NEAR, CONIC_PART_NEAR, m->z_v >= limits->disc_near, m->z[1] >= limits->disc_near,
@@ -144,33 +144,33 @@ static void take_what_passes(const oracle_doubting *d, oracle_meeting *m) {
   double nearest = d->limits.disc_near > 0.0 ? d->limits.disc_near : 0.0;
   m->alpha[0] = oracle_max(m->alpha[0], d->limits.alpha_least);
   m->alpha_v = oracle_max(m->alpha_v, 0.0);
-  if (d->view->rules->form == ORACLE_FORM_RAY || nearest > 0.0)
+  if (d->view->rules->shape == CONIC_SHAPE_RAY || nearest > 0.0)
     m->z[0] = oracle_max(m->z[0], nearest);
 }
 
 void conic_oracle_uncertain_meet(const oracle_doubting *d, const oracle_uncertain *g, double x, double y,
                                  oracle_meeting *m) {
-  const oracle_gaussian_rules *rules = d->view->rules;
+  const conic_profile_row *rules = d->view->rules;
   const double from[2] = {x - g->pixel[0], y - g->pixel[1]};
   bounded at[2];
   *m = (oracle_meeting){.g = g, .covers = 1, .may_cover = 1, .doubts = g->doubts};
   for (int axis = 0; axis < 2; axis++)
     at[axis] = bounded_add(bounded_of(from[axis]), g->offset[axis], ORACLE_FLOAT_UNIT);
-  if (rules->form == ORACLE_FORM_ELLIPSE)
+  if (rules->shape == CONIC_SHAPE_ELLIPSE)
     meet_ellipse(d, at, g, m);
-  else if (rules->form == ORACLE_FORM_DISC && d->model->is_setup_in_float)
+  else if (rules->shape == CONIC_SHAPE_DISC && d->model->is_setup_in_float)
     meet_disc_in_float(g, x, y, m);
   else
     meet_along_ray(g, from, m);
-  if (rules->form == ORACLE_FORM_DISC)
+  if (rules->shape == CONIC_SHAPE_DISC)
     take_dot(at, m);
-  if (rules->form == ORACLE_FORM_ELLIPSE || (rules->form == ORACLE_FORM_DISC && !(d->limits.disc_near > 0.0)))
+  if (rules->shape == CONIC_SHAPE_ELLIPSE || (rules->shape == CONIC_SHAPE_DISC && !(d->limits.disc_near > 0.0)))
     take_bounded(g->z, &m->z_v, m->z);
   find_alpha(d, g, m);
   ask_all(d, x, y, m);
   if (m->may_cover)
     take_what_passes(d, m);
-  if (rules->form == ORACLE_FORM_RAY) {
+  if (rules->shape == CONIC_SHAPE_RAY) {
     m->key = (double)(float)m->z_v;
     m->key_low = m->z[0];
     m->key_high = m->z[1];

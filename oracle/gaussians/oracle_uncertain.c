@@ -57,7 +57,7 @@ static int bound_axes(const oracle_doubting *d, size_t i, bounded_frame *f) {
   }
   if (!(squares > 0.0) || !oracle_is_finite(squares))
     return 0;
-  bound_rotation(q, d->view->rules->is_inria && fabs(squares - 1.0) < 0x1p-20, f->unit, f->world);
+  bound_rotation(q, d->view->rules->takes_rotation_as_is && fabs(squares - 1.0) < 0x1p-20, f->unit, f->world);
   for (int k = 0; k < 3; k++) {
     f->scale[k] = d->set->scale[k] ? (double)d->set->scale[k][i] : 0.0;
     if (!(f->scale[k] >= 0.0) || !oracle_is_finite(f->scale[k]))
@@ -97,7 +97,7 @@ static int bound_mean(const oracle_doubting *d, size_t i, bounded_frame *f) {
 /* The shortest axis, towards the eye; both signs where its side is in doubt. */
 static void bound_normal(const oracle_doubting *d, const bounded_frame *f, oracle_uncertain *g) {
   int axis = 2;
-  for (int k = 1; k >= 0 && !f->is_flat && d->view->rules->form != ORACLE_FORM_DISC; k--)
+  for (int k = 1; k >= 0 && !f->is_flat && d->view->rules->shape != CONIC_SHAPE_DISC; k--)
     axis = f->scale[k] < f->scale[axis] ? k : axis;
   bounded side = bounded_dot(f->direction[axis], f->mean, f->unit);
   for (int row = 0; row < 3; row++) {
@@ -218,20 +218,18 @@ static bounded determinant_in_float(const bounded c[3], double unit) {
 /* The rows of J·V·R·S, and their parts that another order of evaluation needs. */
 static void bound_rows(const oracle_doubting *d, const bounded_frame *f, oracle_uncertain *g, bounded rows[2][3],
                        double gain[2], double size_of_slope[2]) {
-  const oracle_gaussian_rules *rules = d->view->rules;
+  const conic_profile_row *rules = d->view->rules;
   const conic_camera *camera = d->view->camera;
   const double focal[2] = {camera->fx, camera->fy}, size[2] = {camera->width, camera->height};
   for (int axis = 0; axis < 2; axis++) {
     bounded slope = bounded_divide(f->mean[axis], f->mean[2], f->unit);
     double half = 0.5 * size[axis] / focal[axis], c = d->view->center_px[axis];
     g->place[axis] = bounded_add(bounded_scale(focal[axis], slope, f->unit), bounded_of(c), f->unit);
-    if (d->model->is_setup_in_float && rules->is_inria) /* by way of a projection, and 1/(w + 1e-7) */
+    if (d->model->is_setup_in_float && rules->takes_middle) /* by way of a projection, and 1/(w + 1e-7) */
       g->place[axis].off += fabs(focal[axis] * slope.v) * 1e-7 / f->mean[2].v + 4.0 * f->unit * size[axis];
-    if (rules->is_inria)
-      slope = bounded_clamp(slope, -1.3 * half, 1.3 * half, f->unit);
-    else if (rules->dilation > 0.0)
-      slope =
-          bounded_clamp(slope, -(c / focal[axis] + 0.3 * half), (size[axis] - c) / focal[axis] + 0.3 * half, f->unit);
+    const double beyond = rules->slope_margin * half;
+    if (beyond >= 0.0)
+      slope = bounded_clamp(slope, -(c / focal[axis] + beyond), (size[axis] - c) / focal[axis] + beyond, f->unit);
     bounded ratio = bounded_divide(bounded_of(focal[axis]), f->mean[2], f->unit);
     for (int k = 0; k < 3; k++) {
       bounded turned = bounded_multiply(slope, f->axes[k][2], f->unit);
@@ -243,7 +241,7 @@ static void bound_rows(const oracle_doubting *d, const bounded_frame *f, oracle_
 }
 
 static int bound_ellipse(const oracle_doubting *d, const bounded_frame *f, oracle_uncertain *g) {
-  const oracle_gaussian_rules *rules = d->view->rules;
+  const conic_profile_row *rules = d->view->rules;
   const double unit = f->unit, h = rules->dilation;
   bounded rows[2][3], area[3];
   double gain[2], slope[2];
@@ -272,7 +270,7 @@ static int bound_ellipse(const oracle_doubting *d, const bounded_frame *f, oracl
   g->form[0] = bounded_rounded(bounded_divide(c[2], wide, unit), ORACLE_FLOAT_UNIT);
   g->form[1] = bounded_rounded(bounded_divide((bounded){-c[1].v, c[1].off}, wide, unit), ORACLE_FLOAT_UNIT);
   g->form[2] = bounded_rounded(bounded_divide(c[0], wide, unit), ORACLE_FLOAT_UNIT);
-  if (rules->is_inria) {
+  if (rules->coverage == CONIC_COVERAGE_TILES) {
     bounded mean = bounded_scale(0.5, bounded_add(c[0], c[2], unit), unit);
     bounded apart = bounded_subtract(square_of(mean, unit), wide, unit);
     apart.v = oracle_max(apart.v, 0.1);
@@ -370,7 +368,7 @@ static int place_ray(const oracle_doubting *d, const bounded_frame *f, oracle_un
 
 /* The box of the outline at the profile's cutoff: its centre and half its size. */
 static int bound_disc_box(const oracle_doubting *d, const bounded_frame *f, oracle_uncertain *g, bounded extent[2]) {
-  const oracle_gaussian_rules *rules = d->view->rules;
+  const conic_profile_row *rules = d->view->rules;
   const double focal[2] = {d->view->camera->fx, d->view->camera->fy}, unit = f->unit;
   const double sign[3] = {rules->disc_cutoff * rules->disc_cutoff, rules->disc_cutoff * rules->disc_cutoff, -1.0};
   bounded weight = bounded_of(0.0);
@@ -400,12 +398,12 @@ static int bound_disc_box(const oracle_doubting *d, const bounded_frame *f, orac
 }
 
 static int bound_disc(const oracle_doubting *d, const bounded_frame *f, oracle_uncertain *g) {
-  const oracle_gaussian_rules *rules = d->view->rules;
+  const conic_profile_row *rules = d->view->rules;
   bounded extent[2];
   double q = reach_in_q(d, g->opacity);
   if (!(q >= 0.0) || !bound_disc_box(d, f, g, extent))
     return 0;
-  if (rules->is_inria) {
+  if (rules->coverage == CONIC_COVERAGE_TILES) {
     bounded radius = extent[0].v > extent[1].v ? extent[0] : extent[1];
     radius.off = oracle_max(extent[0].off, extent[1].off);
     radius.v = oracle_max(radius.v, 3.0 * 0.707106);
@@ -424,13 +422,13 @@ static int bound_disc(const oracle_doubting *d, const bounded_frame *f, oracle_u
 
 /* Whether the mean is beyond near: the double run's answer, and whether it is in doubt. 0: nowhere. */
 static int pass_near(const oracle_doubting *d, const bounded_frame *f, oracle_uncertain *g) {
-  const oracle_gaussian_rules *rules = d->view->rules;
+  const conic_profile_row *rules = d->view->rules;
   const bounded z = f->mean[2];
   g->is_here = 1;
-  if (rules->form == ORACLE_FORM_RAY)
+  if (rules->shape == CONIC_SHAPE_RAY)
     return 1;
   double off = z.off + f->unit * fabs(rules->near_z);
-  if (rules->near_is_left_out ? z.v <= rules->near_z : z.v < rules->near_z || z.v <= 0.0)
+  if (rules->is_beyond_near ? z.v <= rules->near_z : z.v < rules->near_z || z.v <= 0.0)
     g->is_here = 0;
   if (fabs(z.v - rules->near_z) <= off && off > 0.0)
     g->doubts |= 1u << CONIC_DOUBT_NEAR;
@@ -438,7 +436,7 @@ static int pass_near(const oracle_doubting *d, const bounded_frame *f, oracle_un
 }
 
 int conic_oracle_uncertain_place(const oracle_doubting *d, size_t i, oracle_uncertain *g) {
-  const oracle_gaussian_rules *rules = d->view->rules;
+  const conic_profile_row *rules = d->view->rules;
   bounded_frame f = {.unit = d->model->setup_roundoff};
   memset(g, 0, sizeof *g);
   g->index = (uint32_t)i;
@@ -448,18 +446,18 @@ int conic_oracle_uncertain_place(const oracle_doubting *d, size_t i, oracle_unce
   }
   double opacity = (double)d->set->opacity[i];
   g->opacity = bounded_of(opacity);
-  f.is_flat = !d->set->scale[2] || rules->form == ORACLE_FORM_DISC ||
-              (rules->form == ORACLE_FORM_RAY && !(d->set->scale[2][i] != 0.0f));
+  f.is_flat = !d->set->scale[2] || rules->shape == CONIC_SHAPE_DISC ||
+              (rules->shape == CONIC_SHAPE_RAY && !(d->set->scale[2][i] != 0.0f));
   if (!oracle_is_finite(opacity) || !bound_mean(d, i, &f) || !bound_axes(d, i, &f) || !pass_near(d, &f, g))
     return 0;
-  if (rules->form != ORACLE_FORM_ELLIPSE && !(f.scale[0] > 0.0 && f.scale[1] > 0.0))
+  if (rules->shape != CONIC_SHAPE_ELLIPSE && !(f.scale[0] > 0.0 && f.scale[1] > 0.0))
     return 0;
-  int is_drawn = rules->form == ORACLE_FORM_ELLIPSE ? bound_ellipse(d, &f, g)
-                 : rules->form == ORACLE_FORM_RAY   ? place_ray(d, &f, g)
-                                                    : bound_disc(d, &f, g);
+  int is_drawn = rules->shape == CONIC_SHAPE_ELLIPSE ? bound_ellipse(d, &f, g)
+                 : rules->shape == CONIC_SHAPE_RAY   ? place_ray(d, &f, g)
+                                                     : bound_disc(d, &f, g);
   g->opacity = bounded_rounded(g->opacity, ORACLE_FLOAT_UNIT);
   g->z = bounded_rounded(f.mean[2], ORACLE_FLOAT_UNIT);
-  g->key = rules->is_by_distance ? bounded_root(bounded_dot(f.mean, f.mean, f.unit), f.unit) : f.mean[2];
+  g->key = rules->orders_by_distance ? bounded_root(bounded_dot(f.mean, f.mean, f.unit), f.unit) : f.mean[2];
   bound_normal(d, &f, g);
   return is_drawn;
 }
