@@ -98,6 +98,8 @@ static float planted_alpha(const conic_planted_frame *frame, const conic_ray_mee
   const int is_ray = rules->shape == CONIC_SHAPE_RAY;
   const int is_tiny = !(m->half_q >= 0.0f && m->half_q < 80.0f); /* mistakes reach where exp_negative does not */
   float value = conic_exp_negative(is_tiny ? -80.0f : -m->half_q), most = rules->greatest_half_q;
+  if (rules->fall_end > 0.0f)
+    value = (value - rules->fall_end) * rules->fall_factor;
   if (!(m->half_q >= 0.0f) || (is_ray && !(m->z > 0.0f)) || (most > 0.0f && m->half_q > most) ||
       (p->extent == CONIC_EXTENT_ELLIPSE && m->half_q > 4.5f) ||
       (rules->shape == CONIC_SHAPE_DISC && rules->disc_near > 0.0f && m->z < rules->disc_near))

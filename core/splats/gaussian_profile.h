@@ -32,9 +32,20 @@ typedef struct conic_profile_row {
   int is_beyond_stop;        /* or to it */
   double dilation;           /* px² that are added to the variance */
   double compensation_least; /* the opacity is multiplied by √max(this, det/det′); negative: it is not */
+  double compensation_slack; /* or by √(max(this, det/(det′ + slack)) + slack), and by 0 where det ≤ slack */
   double slope_margin;       /* x/z and y/z of the Jacobian are clamped so far beyond the picture, as a share of half
                                 its width; negative: not */
+  double clip;               /* a mean beyond so many half pictures from the middle is left out; 0: none is */
+  double axis_least;         /* px²: a lesser variance along the shorter axis is taken for it */
+  double axis_most;          /* px: the greatest standard deviation along an axis; 0: there is none */
+  double axis_share;         /* likewise, as a share of the picture's shorter side */
+  double axis_seen;          /* px: what is shorter along its longer axis is left out */
+  double spread_least;       /* px²: half the difference of the variances along the axes is not less */
   double greatest_half_q;    /* nothing lies beyond; 0: no such border */
+  double fall_end;           /* e, where the falloff is (e^(−q/2) − e)/(1 − e), which is 0 there; 0: e^(−q/2) */
+  double fade_z;             /* nearer, opacity and colour fade, linearly in 1/z, to nothing at near_z; 0: not */
+  double color_most;         /* the greatest colour; 0: there is none */
+  int has_plain_color;       /* of degree 0 alone */
   int takes_rotation_as_is;  /* 0: quaternions are normalised; 1: but for those of length 1 up to roundings; 2: none is;
                                 3: likewise, and rays meet the inverse of their matrix, not its transpose */
   int takes_middle;          /* the middle of the picture in place of the principal point */
@@ -44,6 +55,17 @@ typedef struct conic_profile_row {
   double disc_cutoff, disc_extent;
   double disc_near; /* the least depth of a place on the disc; 0: no such border, and the mean's depth counts */
 } conic_profile_row;
+
+/* Whether axes on the screen have limits. */
+static inline int conic_profile_limits_axes(const conic_profile_row *row) {
+  return row->axis_least > 0.0 || row->axis_most > 0.0 || row->axis_share > 0.0 || row->spread_least > 0.0;
+}
+
+/* How much opacity and colour are left at a depth beyond near_z. */
+static inline double conic_profile_fade(const conic_profile_row *row, double z) {
+  return row->fade_z > 0.0 && z < row->fade_z ? (1.0 / row->near_z - 1.0 / z) / (1.0 / row->near_z - 1.0 / row->fade_z)
+                                              : 1.0;
+}
 
 /* Null for a number that is no profile. */
 const conic_profile_row *conic_profile_row_of(conic_gaussian_profile profile);

@@ -57,6 +57,7 @@ conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const
                                           conic_gaussian_filter *filter, conic_gaussian_sight *sight, float normal[3]);
 
 /* A Gaussian's colour in floats (docs/reference/gaussians.md, Colour): max(0, ½ + Σ sh·Y) seen along `from_eye`, of any
- * length. Returns 0 where it is not finite. */
-int conic_harmonic_color(const conic_gaussians *gaussians, size_t i, const double from_eye[3], float color[3]);
+ * length, or by degree 0 alone. Returns 0 where it is not finite. */
+int conic_harmonic_color(const conic_gaussians *gaussians, size_t i, int is_plain, const double from_eye[3],
+                         float color[3]);
 #endif

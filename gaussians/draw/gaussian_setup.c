@@ -5,6 +5,7 @@
 #include "core/base/power.h"
 #include "core/base/vectors.h"
 #include "gaussians/draw/gaussian_outline.h"
+#include "gaussians/draw/screen_variance.h"
 #include "gaussians/draw/view_rays.h"
 
 /* Whose squares add up to 1 but for this, a quaternion was made a unit one in floats. */
@@ -78,9 +79,11 @@ static void take_reference(const conic_gaussian_view *view, double x, double y, 
 /* Twice the logarithm of how much the opacity is above the least alpha: beyond this q nothing is. 0: nowhere. */
 static double reach_of(const conic_profile_row *rules, double opacity) {
   const double least = (double)(float)rules->alpha_least;
-  if (rules->greatest_half_q > 0.0)
-    return 2.0 * rules->greatest_half_q;
-  return opacity >= least ? 2.0 * conic_logarithm(opacity / least) + reach_slack : 0.0;
+  const double most = rules->greatest_half_q > 0.0 ? 2.0 * rules->greatest_half_q : INFINITY;
+  if (!(least > 0.0))
+    return most;
+  double reach = opacity >= least ? 2.0 * conic_logarithm(opacity / least) + reach_slack : 0.0;
+  return reach < most ? reach : most;
 }
 
 /* Half of it, with room for roundings. Where the exponential ends at e⁻⁸⁰, it never falls below what is composited. */
@@ -127,8 +130,9 @@ static int is_far_beside(const conic_gaussian_view *view, const conic_gaussian_p
     /* of a ball before the eye the outline reaches farther outwards, at z = 4·scale and 3.35 scales by less than this
      */
     const double farther = rules->shape == CONIC_SHAPE_RAY ? 8.0 : 1.0;
-    if (beside > 0.0 &&
-        beside * beside > farther * most_reach * (spread * spread * (1.0 + slope * slope) + rules->dilation))
+    if (beside > 0.0 && beside * beside > farther * most_reach *
+                                              (spread * spread * (1.0 + slope * slope) + rules->dilation +
+                                               rules->spread_least + rules->axis_least))
       return 1;
   }
   return 0;
@@ -153,26 +157,30 @@ static conic_gaussian_fate set_up_ellipse(const conic_gaussian_view *view, conic
   conic_cross(rows[0], rows[1], area);
   double xx = conic_dot(rows[0], rows[0]), xy = conic_dot(rows[0], rows[1]), yy = conic_dot(rows[1], rows[1]);
   double bare = conic_dot(area, area), wide = bare + h * (xx + yy) + h * h;
-  xx += h;
-  yy += h;
+  conic_screen_variance v = {{xx + h, xy, yy + h}, wide};
   if (!(wide > 0.0) || !is_number(wide) || !is_number(place[0]) || !is_number(place[1]))
     return CONIC_GAUSSIAN_CULLED;
   if (rules->compensation_least >= 0.0)
-    p->opacity *= sqrt(bare / wide > rules->compensation_least ? bare / wide : rules->compensation_least);
-  const double variance[2] = {xx, yy}, reach = reach_of(rules, p->opacity);
+    p->opacity *= conic_screen_compensation(rules, bare, wide);
+  for (int axis = 0; axis < 2; axis++)
+    if (rules->clip > 0.0 && fabs(place[axis] - 0.5 * size[axis]) > rules->clip * 0.5 * size[axis])
+      return CONIC_GAUSSIAN_CULLED;
+  if (conic_profile_limits_axes(rules) && !conic_screen_limit_axes(view, &v))
+    return CONIC_GAUSSIAN_CULLED;
+  const double variance[2] = {v.c[0], v.c[2]}, reach = reach_of(rules, p->opacity);
   for (int axis = 0; axis < 2; axis++) {
     least[axis] = place[axis] - (sqrt(reach * variance[axis]) + CONIC_GAUSSIAN_SLACK_PX);
     most[axis] = place[axis] + (sqrt(reach * variance[axis]) + CONIC_GAUSSIAN_SLACK_PX);
   }
   if (rules->coverage == CONIC_COVERAGE_TILES) {
-    double mean = 0.5 * (xx + yy), apart = mean * mean - wide;
+    double mean = 0.5 * (v.c[0] + v.c[2]), apart = mean * mean - wide;
     cover_square(view, place, round_up(3.0 * sqrt(mean + sqrt(apart > 0.1 ? apart : 0.1))), least, most);
   }
   take_reference(view, place[0], place[1], f);
   f->half_reach = half_reach_of(reach);
-  f->form[0] = (float)(yy / wide);
-  f->form[1] = (float)(-xy / wide);
-  f->form[2] = (float)(xx / wide);
+  f->form[0] = (float)(v.c[2] / v.area);
+  f->form[1] = (float)(-v.c[1] / v.area);
+  f->form[2] = (float)(v.c[0] / v.area);
   return reach > 0.0 && conic_gaussian_limit_box(view, least, most, f) ? CONIC_GAUSSIAN_DRAWN : CONIC_GAUSSIAN_CULLED;
 }
 
@@ -444,6 +452,8 @@ conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const
   if (rules->shape != CONIC_SHAPE_RAY &&
       (z < rules->near_z || (rules->is_beyond_near && z == rules->near_z) || z <= 0.0))
     return CONIC_GAUSSIAN_CULLED;
+  const double fade = conic_profile_fade(rules, z);
+  p.opacity *= fade;
   if (is_far_beside(view, &p))
     return CONIC_GAUSSIAN_CULLED;
   place_axes(view, q, squares, &p);
@@ -470,5 +480,12 @@ conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const
     choose_normal(view, &p, normal);
   if (view->is_parallel) /* from an eye that is infinitely far */
     memcpy(from_eye, view->camera->cam_from_world[2], sizeof from_eye);
-  return conic_harmonic_color(gaussians, i, from_eye, f->color) ? CONIC_GAUSSIAN_DRAWN : CONIC_GAUSSIAN_SKIPPED;
+  if (!conic_harmonic_color(gaussians, i, rules->has_plain_color, from_eye, f->color))
+    return CONIC_GAUSSIAN_SKIPPED;
+  for (int c = 0; c < 3; c++) {
+    f->color[c] =
+        rules->color_most > 0.0 && f->color[c] > (float)rules->color_most ? (float)rules->color_most : f->color[c];
+    f->color[c] = (float)(fade * (double)f->color[c]);
+  }
+  return CONIC_GAUSSIAN_DRAWN;
 }

@@ -55,7 +55,10 @@ static void sort_hits(CONIC_STORED hit *hits, size_t n) {
 }
 
 static float alpha_of(const conic_gaussian_rules *rules, const CONIC_STORED conic_gaussian_footprint *f, float half_q) {
-  float alpha = f->opacity * conic_exp_negative(-half_q);
+  float fall = conic_exp_negative(-half_q);
+  if (rules->fall_end > 0.0f)
+    fall = (fall - rules->fall_end) * rules->fall_factor;
+  float alpha = f->opacity * fall;
   return alpha < rules->alpha_most ? alpha : rules->alpha_most;
 }
 

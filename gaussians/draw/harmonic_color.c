@@ -6,21 +6,22 @@
 
 enum { MOST_HARMONICS = (CONIC_MAX_SH_DEGREE + 1) * (CONIC_MAX_SH_DEGREE + 1) };
 
-int conic_harmonic_color(const conic_gaussians *set, size_t i, const double from_eye[3], float color[3]) {
+int conic_harmonic_color(const conic_gaussians *set, size_t i, int is_plain, const double from_eye[3], float color[3]) {
   const size_t n = (size_t)(set->sh_degree + 1) * (size_t)(set->sh_degree + 1);
   double direction[3] = {from_eye[0], from_eye[1], from_eye[2]}, exact[MOST_HARMONICS];
   float h[MOST_HARMONICS];
+  const size_t n_seen = is_plain ? 1 : n;
   conic_normalize(direction);
   conic_harmonics_evaluate(direction, set->sh_degree, exact);
   for (size_t k = 0; k < n; k++)
     h[k] = (float)exact[k];
   float sum[3] = {0.0f, 0.0f, 0.0f};
   if (set->sh)
-    for (size_t k = 0; k < n; k++)
+    for (size_t k = 0; k < n_seen; k++)
       for (size_t c = 0; c < 3; c++)
         sum[c] += h[k] * set->sh[(i * n + k) * 3 + c];
   else
-    for (size_t k = 0; k < n; k++)
+    for (size_t k = 0; k < n_seen; k++)
       for (size_t c = 0; c < 3; c++)
         sum[c] += h[k] * conic_float_of_half(set->sh_half[(i * n + k) * 3 + c]);
   for (int c = 0; c < 3; c++) {

@@ -9,7 +9,7 @@ typedef struct scene {
   const conic_gaussian_list *list;
   conic_gaussian_tile *tile;
   lanes most, least, stop, greatest;
-  int is_beyond_stop, has_greatest;
+  int is_beyond_stop, has_greatest, falls_to_zero;
 } scene;
 
 CONIC_INLINE scene scene_of(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
@@ -21,7 +21,8 @@ CONIC_INLINE scene scene_of(const conic_gaussian_list *list, conic_gaussian_tile
                  lanes_of(rules->stop),
                  lanes_of(rules->greatest_half_q),
                  rules->is_beyond_stop,
-                 rules->greatest_half_q > 0.0f};
+                 rules->greatest_half_q > 0.0f,
+                 rules->fall_end > 0.0f};
 }
 
 typedef struct pixels {

@@ -7,7 +7,10 @@
 #include "gaussians/loops/ray_meetings_lanes.h"
 
 CONIC_INLINE lanes lanes_alpha(const scene *s, const gaussian_record *r, lanes half_q) {
-  return lanes_min(r->opacity * lanes_exp_negative(-half_q), s->most);
+  lanes fall = lanes_exp_negative(-half_q);
+  if (s->falls_to_zero)
+    fall = (fall - s->list->rules->fall_end) * s->list->rules->fall_factor;
+  return lanes_min(r->opacity * fall, s->most);
 }
 
 CONIC_INLINE void add_planes_of_footprint(const conic_gaussian_list *list, uint32_t footprint, response *to) {

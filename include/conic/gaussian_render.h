@@ -24,10 +24,17 @@ typedef enum conic_gaussian_profile {
   CONIC_PROFILE_GSPLAT_1_6_AA = 5,
   CONIC_PROFILE_2DGS_2024 = 6,   /* the 2D Gaussians of their authors' program */
   CONIC_PROFILE_2DGS_GSPLAT = 7, /* and of gsplat's */
-  CONIC_PROFILE_KHR_2026 = 8     /* KHR_gaussian_splatting, release candidate */
+  CONIC_PROFILE_KHR_2026 = 8,    /* KHR_gaussian_splatting, release candidate */
+  CONIC_PROFILE_INRIA_2023_AA = 9,
+  CONIC_PROFILE_MIP_2023 = 10, /* Mip-Splatting */
+  CONIC_PROFILE_BRUSH_1 = 11,
+  CONIC_PROFILE_SPLAT_2023 = 12,   /* antimatter15/splat */
+  CONIC_PROFILE_PLAYCANVAS_2 = 13, /* PlayCanvas by WebGL */
+  CONIC_PROFILE_SPARK_2 = 14,
+  CONIC_PROFILE_GS3D_0_4 = 15 /* GaussianSplats3D */
 } conic_gaussian_profile;
 
-#define CONIC_N_GAUSSIAN_PROFILES 9
+#define CONIC_N_GAUSSIAN_PROFILES 16
 
 /* "exact", "inria-2023" …; null for a number that is no profile. */
 CONIC_API const char *conic_gaussian_profile_name(conic_gaussian_profile profile);

@@ -77,6 +77,45 @@ static void cover_tiles(const oracle_gaussian_view *view, double radius, oracle_
   }
 }
 
+/* √(max(least, before/(after + slack)) + slack). */
+static double compensation(const conic_profile_row *rules, double before, double after) {
+  const double slack = rules->compensation_slack;
+  if (slack > 0.0 && before <= slack)
+    return 0.0;
+  return sqrt(oracle_max(rules->compensation_least, before / (after + slack)) + slack);
+}
+
+double conic_oracle_longest_axis(const oracle_gaussian_view *view) {
+  const conic_profile_row *rules = view->rules;
+  double most = rules->axis_most > 0.0 ? rules->axis_most : INFINITY;
+  if (rules->axis_share > 0.0)
+    most = oracle_min(most, rules->axis_share * oracle_min(view->camera->width, view->camera->height));
+  return most;
+}
+
+/* The form of an ellipse whose axes have limits: u·uᵀ/λ₁ + v·vᵀ/λ₂. Returns 0 where nothing is drawn. */
+static int limit_form(const oracle_gaussian_view *view, oracle_symmetric c, double area, double form[3]) {
+  const conic_profile_row *rules = view->rules;
+  const double longest = conic_oracle_longest_axis(view), middle = 0.5 * (c.xx + c.yy);
+  const double own = sqrt(0.25 * (c.xx - c.yy) * (c.xx - c.yy) + c.xy * c.xy);
+  const double spread = oracle_max(own, rules->spread_least);
+  double first = middle + spread, second = spread > own ? middle - spread : area / first;
+  double u[2] = {c.xy, first - c.xx}, other[2] = {first - c.yy, c.xy};
+  if (first < rules->axis_seen * rules->axis_seen || (second <= 0.0 && !(rules->axis_least > 0.0)))
+    return 0;
+  if (spread == own && c.xx > c.yy) /* the same direction, without cancellation */
+    memcpy(u, other, sizeof u);
+  double length = sqrt(u[0] * u[0] + u[1] * u[1]);
+  u[0] = length > 0.0 ? u[0] / length : 1.0;
+  u[1] = length > 0.0 ? u[1] / length : 0.0;
+  first = oracle_min(first, longest * longest);
+  second = oracle_min(oracle_max(second, rules->axis_least), longest * longest);
+  form[0] = u[0] * u[0] / first + u[1] * u[1] / second;
+  form[1] = u[0] * u[1] / first - u[0] * u[1] / second;
+  form[2] = u[1] * u[1] / first + u[0] * u[0] / second;
+  return 1;
+}
+
 static int place_ellipse(const oracle_gaussian_view *view, oracle_gaussian *g) {
   const conic_profile_row *rules = view->rules;
   const conic_camera *camera = view->camera;
@@ -99,10 +138,15 @@ static int place_ellipse(const oracle_gaussian_view *view, oracle_gaussian *g) {
   if (!(after > 0.0) || !oracle_is_finite(after))
     return 0;
   if (rules->compensation_least >= 0.0)
-    g->opacity *= sqrt(oracle_max(rules->compensation_least, before / after));
+    g->opacity *= compensation(rules, before, after);
   g->form[0] = wide.yy / after;
   g->form[1] = -wide.xy / after;
   g->form[2] = wide.xx / after;
+  for (int axis = 0; axis < 2; axis++)
+    if (rules->clip > 0.0 && fabs(2.0 * g->place_px[axis] / size[axis] - 1.0) > rules->clip)
+      return 0;
+  if (conic_profile_limits_axes(rules) && !limit_form(view, wide, after, g->form))
+    return 0;
   if (rules->coverage == CONIC_COVERAGE_TILES) {
     double mean = 0.5 * (wide.xx + wide.yy);
     cover_tiles(view, ceil(3.0 * sqrt(mean + sqrt(oracle_max(0.1, mean * mean - after)))), g);
@@ -178,7 +222,11 @@ static void color_towards_eye(const oracle_gaussian_view *view, const conic_gaus
   double length = oracle_length(direction);
   for (int axis = 0; axis < 3; axis++)
     direction[axis] = length > 0.0 ? direction[axis] / length : 0.0;
-  conic_oracle_harmonics(sh, set->sh_degree, direction, g->color);
+  conic_oracle_harmonics(sh, view->rules->has_plain_color ? 0 : set->sh_degree, direction, g->color);
+  const double fade = conic_profile_fade(view->rules, g->mean[2]), most = view->rules->color_most;
+  for (int c = 0; c < 3; c++)
+    g->color[c] = fade * (most > 0.0 ? oracle_min(g->color[c], most) : g->color[c]);
+  g->opacity *= fade;
 }
 
 void conic_oracle_gaussian_place(const oracle_gaussian_view *view, const conic_gaussians *set, size_t i,
@@ -296,6 +344,7 @@ double conic_oracle_gaussian_alpha(const oracle_gaussian_view *view, const oracl
   }
   if (!(q >= 0.0) || (rules->greatest_half_q > 0.0 && q > 2.0 * rules->greatest_half_q))
     return 0.0;
-  double alpha = oracle_min(rules->alpha_most, g->opacity * share * conic_oracle_exp(-0.5 * q));
+  const double fall = (conic_oracle_exp(-0.5 * q) - rules->fall_end) / (1.0 - rules->fall_end);
+  double alpha = oracle_min(rules->alpha_most, g->opacity * share * fall);
   return alpha >= rules->alpha_least ? alpha : 0.0;
 }

@@ -41,6 +41,8 @@ void conic_oracle_gaussian_place(const oracle_gaussian_view *view, const conic_g
 
 /* Its quaternion as the profile takes it; returns the length that it was divided by. */
 double conic_oracle_quaternion(const conic_profile_row *rules, const conic_gaussians *gaussians, size_t i, double q[4]);
+/* The greatest standard deviation along an axis, in pixels; infinite where there is none. */
+double conic_oracle_longest_axis(const oracle_gaussian_view *view);
 /* The rotation of a quaternion of unit length. */
 void conic_oracle_rotation(const double q[4], double r[3][3]);
 /* Its harmonics' (degree + 1)² × 3 numbers. */

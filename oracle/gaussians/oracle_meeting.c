@@ -86,17 +86,27 @@ static void take_dot(const bounded at[2], oracle_meeting *m) {
   m->half_q[1] = oracle_min(m->half_q[1], bounded_high(dot));
 }
 
+/* Of o·e^x, where the falloff falls to zero at the border; each step of it is rounded. */
+static double fall_to_zero(const oracle_limits *limits, double opacity, double alpha, double side) {
+  const double end = opacity * limits->fall_end, rounded = 4.0 * ORACLE_FLOAT_UNIT * (alpha + end);
+  return end > 0.0 ? (alpha - end + side * rounded) * limits->fall_factor : alpha;
+}
+
 /* o·e^x, x ≤ 0, and its product rounded. */
 static void find_alpha(const oracle_doubting *d, const oracle_uncertain *g, oracle_meeting *m) {
   const conic_float_model *model = d->model;
   const double most = d->limits.alpha_most;
   double nearest = -oracle_max(m->half_q[0], 0.0), farthest = -oracle_max(m->half_q[1], 0.0);
   double off = model->exp_relative + 2.0 * ORACLE_FLOAT_UNIT, low, high;
-  low = oracle_max(bounded_low(g->opacity), 0.0) * conic_oracle_exp(farthest);
-  high = bounded_high(g->opacity) * conic_oracle_exp(nearest);
+  const double faintest = oracle_max(bounded_low(g->opacity), 0.0), strongest = bounded_high(g->opacity);
+  low = faintest * conic_oracle_exp(farthest);
+  high = strongest * conic_oracle_exp(nearest);
   low *= oracle_max(1.0 - (off + model->exp_by_argument * oracle_min(-farthest, 1e3)), 0.0);
   high *= 1.0 + (off + model->exp_by_argument * -nearest);
-  m->alpha_v = oracle_min(g->opacity.v * conic_oracle_exp(-m->half_q_v), most);
+  low = fall_to_zero(&d->limits, faintest, low, -1.0);
+  high = fall_to_zero(&d->limits, strongest, high, 1.0);
+  const double alpha = g->opacity.v * conic_oracle_exp(-m->half_q_v);
+  m->alpha_v = oracle_min(fall_to_zero(&d->limits, g->opacity.v, alpha, 0.0), most);
   if (high >= most && low < most)
     m->doubts |= 1u << CONIC_DOUBT_MOST;
   m->alpha[0] = oracle_min(low, most);

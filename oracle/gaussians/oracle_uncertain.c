@@ -240,6 +240,87 @@ static void bound_rows(const oracle_doubting *d, const bounded_frame *f, oracle_
   }
 }
 
+/* What the dilation leaves of the opacity. */
+static bounded bound_compensation(const conic_profile_row *rules, bounded bare, bounded wide, double unit) {
+  const double slack = rules->compensation_slack;
+  bounded ratio = bounded_divide(bare, slack > 0.0 ? bounded_add(wide, bounded_of(slack), unit) : wide, unit);
+  ratio.v = oracle_max(ratio.v, rules->compensation_least);
+  ratio.off = oracle_min(ratio.off, 2.0); /* it is between 0 and 1 */
+  if (slack > 0.0)
+    ratio = bounded_add(ratio, bounded_of(slack), unit);
+  bounded share = bounded_root(ratio, unit);
+  if (slack > 0.0 && bare.v <= slack)
+    return (bounded){0.0, bounded_high(bare) > slack ? bounded_high(share) : 0.0};
+  if (slack > 0.0 && bounded_low(bare) <= slack)
+    share.off = oracle_max(share.off, share.v);
+  return share;
+}
+
+static bounded bounded_within(bounded a, double low, double high) {
+  const double v = oracle_min(oracle_max(a.v, low), high), down = oracle_min(oracle_max(bounded_low(a), low), high);
+  const double up = oracle_min(oracle_max(bounded_high(a), low), high);
+  return (bounded){v, oracle_max(v - down, up - v)};
+}
+
+/* Whether a number is above a border; where that is in doubt, the Gaussian may be left out everywhere. */
+static void ask_everywhere(bounded a, double border, int may_be_at, oracle_uncertain *g) {
+  g->is_here &= may_be_at ? a.v >= border : a.v > border;
+  if (fabs(a.v - border) <= a.off)
+    g->doubts |= 1u << CONIC_DOUBT_NEAR;
+}
+
+/* u·uᵀ of the longer axis: xx, xy, yy. Others find u as (xy, λ − xx), however little is left of that difference. */
+static void bound_direction(const oracle_doubting *d, const bounded c[3], bounded apart, bounded own, bounded spread,
+                            bounded first, bounded across[3]) {
+  const double unit = d->model->setup_roundoff;
+  if (bounded_low(own) > d->view->rules->spread_least) {
+    bounded x = bounded_divide(apart, own, unit), y = bounded_divide(c[1], own, unit);
+    across[0] = (bounded){0.5 + 0.5 * x.v, 0.5 * x.off};
+    across[1] = (bounded){0.5 * y.v, 0.5 * y.off};
+    across[2] = (bounded){0.5 - 0.5 * x.v, 0.5 * x.off};
+  } else {
+    bounded down = bounded_subtract(spread, apart, unit), both = bounded_multiply(c[1], down, unit);
+    bounded squares = bounded_add(square_of(c[1], unit), square_of(down, unit), unit);
+    across[0] = bounded_divide(square_of(c[1], unit), squares, unit);
+    across[1] = bounded_divide(both, squares, unit);
+    across[2] = bounded_divide(square_of(down, unit), squares, unit);
+  }
+  const double down = spread.v - apart.v, length = sqrt(c[1].v * c[1].v + down * down);
+  const double turned = d->model->is_setup_in_float ? 8.0 * unit * bounded_high(first) / length : 0.0;
+  for (int k = 0; k < 3; k++)
+    across[k].off = oracle_min(across[k].off + (turned >= 0.0 ? turned : 2.0), 2.0);
+}
+
+/* The form of an ellipse whose axes have limits. Returns 0 where it is drawn nowhere. */
+static int bound_limited_form(const oracle_doubting *d, const bounded c[3], bounded area, oracle_uncertain *g) {
+  const conic_profile_row *rules = d->view->rules;
+  const double unit = d->model->setup_roundoff, longest = conic_oracle_longest_axis(d->view), most = longest * longest;
+  bounded middle = bounded_scale(0.5, bounded_add(c[0], c[2], unit), unit), across[3];
+  bounded apart = bounded_scale(0.5, bounded_subtract(c[0], c[2], unit), unit);
+  bounded own = bounded_root(bounded_add(square_of(apart, unit), square_of(c[1], unit), unit), unit);
+  bounded spread = bounded_within(own, rules->spread_least, INFINITY), first = bounded_add(middle, spread, unit);
+  bounded second = bounded_low(own) > rules->spread_least && !d->model->is_setup_in_float
+                       ? bounded_divide(area, first, unit)
+                       : bounded_subtract(middle, spread, unit);
+  ask_everywhere(first, rules->axis_seen * rules->axis_seen, 1, g);
+  if (!(rules->axis_least > 0.0))
+    ask_everywhere(second, 0.0, 0, g);
+  if (!g->is_here && !g->doubts)
+    return 0;
+  if (!d->model->is_setup_in_float && bounded_low(own) >= rules->spread_least &&
+      bounded_low(second) >= rules->axis_least && bounded_high(first) <= most)
+    return 1;
+  bound_direction(d, c, apart, own, spread, first, across);
+  first = bounded_divide(bounded_of(1.0), bounded_within(first, 0.0, most), unit);
+  second = bounded_divide(bounded_of(1.0), bounded_within(second, rules->axis_least, most), unit);
+  bounded difference = bounded_subtract(first, second, unit);
+  for (int k = 0; k < 3; k++) {
+    bounded term = bounded_multiply(difference, across[k], unit);
+    g->form[k] = bounded_rounded(k == 1 ? term : bounded_add(second, term, unit), ORACLE_FLOAT_UNIT);
+  }
+  return 1;
+}
+
 static int bound_ellipse(const oracle_doubting *d, const bounded_frame *f, oracle_uncertain *g) {
   const conic_profile_row *rules = d->view->rules;
   const double unit = f->unit, h = rules->dilation;
@@ -262,10 +343,7 @@ static int bound_ellipse(const oracle_doubting *d, const bounded_frame *f, oracl
   if (!(bounded_high(wide) > 1e-40) || !oracle_is_finite(wide.v)) /* but for underflow, it is 0 */
     return 0;
   if (rules->compensation_least >= 0.0) {
-    bounded ratio = bounded_divide(bare, wide, unit);
-    ratio.v = oracle_max(ratio.v, rules->compensation_least);
-    ratio.off = oracle_min(ratio.off, 2.0); /* it is between 0 and 1 */
-    g->opacity = bounded_multiply(g->opacity, bounded_root(ratio, unit), unit);
+    g->opacity = bounded_multiply(g->opacity, bound_compensation(rules, bare, wide, unit), unit);
   }
   g->form[0] = bounded_rounded(bounded_divide(c[2], wide, unit), ORACLE_FLOAT_UNIT);
   g->form[1] = bounded_rounded(bounded_divide((bounded){-c[1].v, c[1].off}, wide, unit), ORACLE_FLOAT_UNIT);
@@ -277,7 +355,15 @@ static int bound_ellipse(const oracle_doubting *d, const bounded_frame *f, oracl
     bounded root = bounded_root(bounded_add(mean, bounded_root(apart, unit), unit), unit);
     admit_square(d, bounded_scale(3.0, root, unit), g);
   }
-  const bounded variance[2] = {c[0], c[2]};
+  for (int axis = 0; axis < 2 && rules->clip > 0.0; axis++) {
+    const double half = 0.5 * (axis ? d->view->camera->height : d->view->camera->width);
+    bounded beyond = {rules->clip * half - fabs(g->place[axis].v - half), g->place[axis].off + 4.0 * unit * half};
+    ask_everywhere(beyond, 0.0, 1, g);
+  }
+  if (conic_profile_limits_axes(rules) && !bound_limited_form(d, c, wide, g))
+    return 0;
+  const double grown = rules->spread_least + rules->axis_least;
+  const bounded variance[2] = {{c[0].v + grown, c[0].off}, {c[2].v + grown, c[2].off}};
   double q = reach_in_q(d, g->opacity);
   reach_of_ellipse(variance, q, g);
   bound_offset(d, unit, g);
@@ -435,6 +521,15 @@ static int pass_near(const oracle_doubting *d, const bounded_frame *f, oracle_un
   return (g->is_here || g->doubts) && bounded_high(z) > 0.0;
 }
 
+/* How much is left of opacity and colour next to the near plane: it grows with z. */
+static bounded bound_fade(const conic_profile_row *rules, bounded z, double unit) {
+  const double v = conic_profile_fade(rules, oracle_max(z.v, rules->near_z));
+  const double low = conic_profile_fade(rules, oracle_max(bounded_low(z), rules->near_z));
+  const double high = conic_profile_fade(rules, oracle_max(bounded_high(z), rules->near_z));
+  const double rounded = v < 1.0 ? 8.0 * unit * (1.0 + rules->fade_z / oracle_max(z.v, rules->near_z)) : 0.0;
+  return (bounded){v, oracle_max(v - low, high - v) + rounded};
+}
+
 int conic_oracle_uncertain_place(const oracle_doubting *d, size_t i, oracle_uncertain *g) {
   const conic_profile_row *rules = d->view->rules;
   bounded_frame f = {.unit = d->model->setup_roundoff};
@@ -450,6 +545,9 @@ int conic_oracle_uncertain_place(const oracle_doubting *d, size_t i, oracle_unce
               (rules->shape == CONIC_SHAPE_RAY && !(d->set->scale[2][i] != 0.0f));
   if (!oracle_is_finite(opacity) || !bound_mean(d, i, &f) || !bound_axes(d, i, &f) || !pass_near(d, &f, g))
     return 0;
+  g->fade = bound_fade(rules, f.mean[2], f.unit);
+  if (rules->fade_z > 0.0)
+    g->opacity = bounded_multiply(g->opacity, g->fade, f.unit);
   if (rules->shape != CONIC_SHAPE_ELLIPSE && !(f.scale[0] > 0.0 && f.scale[1] > 0.0))
     return 0;
   int is_drawn = rules->shape == CONIC_SHAPE_ELLIPSE ? bound_ellipse(d, &f, g)
@@ -480,8 +578,10 @@ static double sh_number(const conic_gaussians *set, size_t at) {
  * direction that is not quite of unit length does. */
 int conic_oracle_uncertain_color(const oracle_doubting *d, oracle_uncertain *g) {
   const conic_gaussians *set = d->set;
-  const int degree = set->sh_degree;
+  const int degree = d->view->rules->has_plain_color ? 0 : set->sh_degree;
   const size_t n = (size_t)(degree + 1) * (size_t)(degree + 1), i = g->index;
+  const size_t n_stored = (size_t)(set->sh_degree + 1) * (size_t)(set->sh_degree + 1);
+  const double most = d->view->rules->color_most > 0.0 ? d->view->rules->color_most : INFINITY;
   double direction[3], y[(CONIC_MAX_SH_DEGREE + 1) * (CONIC_MAX_SH_DEGREE + 1)], length, far = 0.0;
   double sum[3] = {0.5, 0.5, 0.5}, size[3] = {0.5, 0.5, 0.5}, turned[3] = {0.0, 0.0, 0.0};
   for (int axis = 0; axis < 3; axis++) {
@@ -497,7 +597,7 @@ int conic_oracle_uncertain_color(const oracle_doubting *d, oracle_uncertain *g) 
   for (size_t k = 0; k < n; k++) {
     int l = k < 1 ? 0 : k < 4 ? 1 : k < 9 ? 2 : k < 16 ? 3 : 4;
     for (size_t c = 0; c < 3; c++) {
-      double coefficient = sh_number(set, (i * n + k) * 3 + c);
+      double coefficient = sh_number(set, (i * n_stored + k) * 3 + c);
       sum[c] += y[k] * coefficient;
       size[c] += fabs(y[k] * coefficient);
       turned[c] += 2.0 * off * sqrt(l * (l + 1) * (2 * l + 1) / 12.566) * fabs(coefficient);
@@ -508,9 +608,9 @@ int conic_oracle_uncertain_color(const oracle_doubting *d, oracle_uncertain *g) 
     g->color[c] = (bounded){sum[c], turned[c] + ((double)n + 3.0) * ORACLE_FLOAT_UNIT * size[c]};
     if (!bounded_is_finite(g->color[c]))
       return 0;
-    double high = oracle_max(bounded_high(g->color[c]), 0.0), low = oracle_max(bounded_low(g->color[c]), 0.0);
-    g->color[c].v = oracle_max(sum[c], 0.0);
-    g->color[c].off = oracle_max(high - g->color[c].v, g->color[c].v - low);
+    g->color[c] = bounded_within(g->color[c], 0.0, most);
+    if (d->view->rules->fade_z > 0.0)
+      g->color[c] = bounded_multiply(g->color[c], g->fade, ORACLE_FLOAT_UNIT);
   }
   return 1;
 }

@@ -7,7 +7,7 @@
 
 /* The profile's limits as the floats that everybody has of them. */
 typedef struct oracle_limits {
-  double alpha_least, alpha_most, stop, half_cutoff, disc_near;
+  double alpha_least, alpha_most, stop, half_cutoff, disc_near, fall_end, fall_factor;
 } oracle_limits;
 
 typedef struct oracle_doubting {
@@ -21,7 +21,7 @@ typedef struct oracle_uncertain {
   uint32_t index;
   unsigned doubts; /* CONIC_DOUBT_NEAR: it may be left out everywhere */
   int is_here;     /* as the double run has it */
-  bounded key, z, opacity, color[3], normal[3];
+  bounded key, z, opacity, fade, color[3], normal[3];
   double pixel[2];             /* the centre of the pixel that offsets are counted from */
   bounded place[2], offset[2]; /* on the screen; from there to that pixel */
   bounded form[3];
