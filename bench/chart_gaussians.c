@@ -1,6 +1,7 @@
 #include "bench/chart_gaussians.h"
 
 #include "bench/bench.h"
+#include "core/splats/gaussian_profile.h"
 
 const char *const cli_truth_names[CLI_N_TRUTHS] = {"overlap", "volume"};
 
@@ -124,7 +125,7 @@ static conic_status measure_profile(gaussian_chart_job *job, conic_gaussian_prof
 
 /* Which take two axes of three. */
 static int is_of_discs(conic_gaussian_profile profile) {
-  return profile == CONIC_PROFILE_2DGS_2024 || profile == CONIC_PROFILE_2DGS_GSPLAT;
+  return conic_profile_row_of(profile)->shape == CONIC_SHAPE_DISC;
 }
 
 static void find_profile_fronts(cli_gaussian_chart *chart) {

@@ -51,7 +51,7 @@ static const struct {
     [CLI_FACT_SHAPED] = {"shaped", "another --shade than none, or --aov N"},
     [CLI_FACT_LIT] = {"lit", "another --shade than none"},
     [CLI_FACT_UNSETTLED] = {"unsettled", "that --method and --samples do not say it all"},
-    [CLI_FACT_OWN_CENTER] = {"center", "--profile inria-2023 or 2dgs-2024"},
+    [CLI_FACT_OWN_CENTER] = {"center", "a --profile that takes the picture's middle, as inria-2023"},
     [CLI_FACT_EXR] = {"exr", "an .exr"},
     [CLI_FACT_TIFF] = {"tiff", "a .tif"},
     [CLI_FACT_TELLING] = {"telling", "an .exr, .png or .tif, which says how it was made"},

@@ -140,7 +140,7 @@ static conic_status make_suite_scene(conformance_job *job, int i_scene) {
   job->about[i_scene].n_records = scene->make ? content.gaussians.count : content.model.points.count;
   job->about[i_scene].sh_degree = content.gaussians.sh_degree;
   for (int p = 0; status == CONIC_OK && p < SUITE_PROFILES; p++)
-    if (scene->profiles & job->profiles & 1u << p) {
+    if (cli_suite_profiles(scene) & job->profiles & 1u << p) {
       suite_case *one = &job->cases[job->n_cases++];
       *one = (suite_case){scene, p, 0};
       status = make_case(job, &content, one);
@@ -246,7 +246,7 @@ static void describe_suite(cli_json *json, const conformance_job *job) {
   describe_levels(json, job);
   cli_json_array(json, "scenes");
   for (int i = 0; i < cli_n_suite_scenes; i++)
-    if (cli_suite_scenes[i].profiles & job->profiles)
+    if (cli_suite_profiles(&cli_suite_scenes[i]) & job->profiles)
       describe_scene(json, job, i);
   cli_json_close(json);
   describe_cases(json, job);
@@ -342,7 +342,7 @@ static int make_suite(void *cookie) {
   conic_status status = make_suite_folders(job->files);
   for (int i = 0; status == CONIC_OK && i < cli_n_suite_scenes; i++) {
     cli_session_part(job->base.session, "scenes", i + 1, cli_n_suite_scenes);
-    if (cli_suite_scenes[i].profiles & job->profiles)
+    if (cli_suite_profiles(&cli_suite_scenes[i]) & job->profiles)
       status = make_suite_scene(job, i);
   }
   if (status == CONIC_OK)

@@ -148,8 +148,8 @@ static int check_gradient_judging(cli_session *session, const gradients_job *job
   if (!job->files.weights)
     return cli_usage("judge: --gradients needs --weights W.exr");
   if (!cli_is_composited(scene) || !conic_gradient_has_profile(profile) || profile == CONIC_PROFILE_EXACT)
-    return cli_usage("judge: --gradients is of Gaussian scenes by the profiles inria-2023, gsplat-1.5, gsplat-1.6 "
-                     "(and -aa) and khr-2026; give --profile");
+    return cli_usage("judge: --gradients is of Gaussian scenes by a profile of ellipses without limits of axes, as "
+                     "gsplat-1.6; give --profile");
   if (scene->shot.view.samples > 1 || scene->shot.gaussians.prefilter != 0.0)
     return cli_usage("judge: --gradients is of one sample a pixel, without a prefilter");
   int exit_code = cli_check_outputs(session, NULL, 0);

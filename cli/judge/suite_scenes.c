@@ -3,6 +3,7 @@
 
 #include "core/base/color.h"
 #include "core/base/random.h"
+#include "core/splats/gaussian_profile.h"
 #include "gaussians/scene/gaussian_set.h"
 #include "gaussians/scene/made_gaussians.h"
 
@@ -400,13 +401,9 @@ static conic_status make_steep(conic_context *context, conic_splats *splats) {
 
 /* --- the table --- */
 
-/* A profile's bit, and groups of profiles that draw the same scenes. */
-#define BIT(profile) (1u << CONIC_PROFILE_##profile)
-#define BLURRED (BIT(INRIA_2023) | BIT(GSPLAT_1_5) | BIT(GSPLAT_1_6))
-#define ANTIALIASED (BIT(GSPLAT_1_5_AA) | BIT(GSPLAT_1_6_AA))
-#define OTHERS (BIT(KHR_2026) | BIT(EXACT))
-#define SOLIDS (BLURRED | ANTIALIASED | OTHERS)
-#define DISCS (BIT(2DGS_2024) | BIT(2DGS_GSPLAT) | BIT(EXACT))
+#define BLURRED SUITE_OF_ELLIPSES | SUITE_OF_RAYS
+#define SOLIDS BLURRED | SUITE_OF_FAINTER_ELLIPSES
+#define DISCS SUITE_OF_DISCS | SUITE_OF_RAYS
 
 /* How a scene is seen: small pictures that are not square, and whose sides are no multiples of a tile. */
 #define SMALL .width = 36, .height = 20, .center = {18.0, 10.0}
@@ -417,63 +414,63 @@ static conic_status make_steep(conic_context *context, conic_splats *splats) {
 
 const suite_scene cli_suite_scenes[] = {
     {"ball", "one round Gaussian: the size of its picture, the falloff, the dilation", 1, SMALL, AHEAD,
-     .profiles = SOLIDS, .make = make_ball},
+     .drawn_by = SOLIDS, .make = make_ball},
     {"ellipse", "one Gaussian of three sizes, turned: the rotation, the order of the quaternion, the projection", 1,
-     SMALL, AHEAD, .profiles = SOLIDS, .formats = SUITE_SPZ | SUITE_GLB, .make = make_ellipse},
+     SMALL, AHEAD, .drawn_by = SOLIDS, .formats = SUITE_SPZ | SUITE_GLB, .make = make_ellipse},
     {"solid", "one Gaussian of opacity 0.9999, of which a colour is below 0: the largest alpha, the clamp at 0", 1,
-     SMALL, AHEAD, .profiles = SOLIDS, .make = make_solid},
+     SMALL, AHEAD, .drawn_by = SOLIDS, .make = make_solid},
     {"harmonics", "one Gaussian of degree 3: every harmonic, and the order of f_rest", 1, SMALL, TURNED,
-     .profiles = SOLIDS, .formats = SUITE_GLB, .make = make_harmonics},
-    {"disc", "one 2D Gaussian, tilted", 1, SMALL, AHEAD, .profiles = DISCS, .make = make_disc},
+     .drawn_by = SOLIDS, .formats = SUITE_GLB, .make = make_harmonics},
+    {"disc", "one 2D Gaussian, tilted", 1, SMALL, AHEAD, .drawn_by = DISCS, .make = make_disc},
 
     {"overlap", "balls that cover one another, and stand in the file in another order than in depth", 2, SMALL, AHEAD,
-     .profiles = SOLIDS, .formats = SUITE_SPZ, .make = make_overlap},
+     .drawn_by = SOLIDS, .formats = SUITE_SPZ, .make = make_overlap},
     {"faint", "a pile of opacities from under 1/255 to 0.99: what is left out, and where compositing ends", 2, SMALL,
-     AHEAD, .profiles = SOLIDS, .make = make_faint},
+     AHEAD, .drawn_by = SOLIDS, .make = make_faint},
     {"off-center", "a principal point off the middle, and two focal lengths", 2, 36, 20, .focal = {40.0, 30.0},
      .center = {14.25, 12.75}, .rotation = {8.0, 2.0, -1.0, 1.0}, .eye = {-1.125, -1.75, -3.5},
-     .profiles = SOLIDS & ~BIT(INRIA_2023), .make = make_ring},
+     .drawn_by = SOLIDS | SUITE_WITH_CENTER, .make = make_ring},
     {"background", "harmonics of degree 2 before a coloured background", 2, SMALL, TURNED,
-     .background = {0.9f, 0.5f, 0.2f}, .profiles = BLURRED | OTHERS, .make = make_ring},
-    {"discs", "2D Gaussians that cover one another", 2, SMALL, AHEAD, .profiles = DISCS, .make = make_discs},
+     .background = {0.9f, 0.5f, 0.2f}, .drawn_by = BLURRED, .make = make_ring},
+    {"discs", "2D Gaussians that cover one another", 2, SMALL, AHEAD, .drawn_by = DISCS, .make = make_discs},
 
-    {"room", "300 Gaussians of degree 3, as they are trained", 3, MIDDLE, TURNED, .profiles = SOLIDS,
+    {"room", "300 Gaussians of degree 3, as they are trained", 3, MIDDLE, TURNED, .drawn_by = SOLIDS,
      .formats = SUITE_GLB, .make = make_trained},
-    {"room-of-discs", "300 2D Gaussians", 3, MIDDLE, TURNED, .profiles = DISCS, .make = make_flat_room},
+    {"room-of-discs", "300 2D Gaussians", 3, MIDDLE, TURNED, .drawn_by = DISCS, .make = make_flat_room},
 
-    /* khr-2026 has no near plane, so Gaussians next to the eye have no useful bounds. */
+    /* Without a near plane, Gaussians next to the eye have no useful bounds. */
     {"crowd", "4000 Gaussians about the eye: the near plane, what is behind, and the borders", 4, MIDDLE,
      .rotation = {8.0, 2.0, -1.0, 1.0}, .eye = {-0.75, -0.75, -1.75}, .focal = {30.0, 30.0},
-     .profiles = SOLIDS & ~BIT(KHR_2026), .make = make_crowd},
+     .drawn_by = SOLIDS | SUITE_WITH_NEAR, .make = make_crowd},
     {"extremes", "huge ones, needles, plates, specks below a pixel, and what is 10,000 away", 4, MIDDLE, AHEAD,
-     .profiles = SOLIDS, .make = make_extremes},
+     .drawn_by = SOLIDS, .make = make_extremes},
 
-    {"least", "opacities about 1/255, each over a pixel's centre", 5, SMALL, AHEAD, .profiles = BLURRED | OTHERS,
+    {"least", "opacities about 1/255, each over a pixel's centre", 5, SMALL, AHEAD, .drawn_by = BLURRED,
      .make = make_least},
-    {"end", "piles by which T comes to about 1e-4", 5, SMALL, AHEAD, .profiles = BLURRED | OTHERS, .make = make_end},
-    {"ties", "equal depths, and depths apart by less than a float tells", 5, SMALL, AHEAD, .profiles = BLURRED | OTHERS,
+    {"end", "piles by which T comes to about 1e-4", 5, SMALL, AHEAD, .drawn_by = BLURRED, .make = make_end},
+    {"ties", "equal depths, and depths apart by less than a float tells", 5, SMALL, AHEAD, .drawn_by = BLURRED,
      .make = make_ties},
-    {"quaternions", "quaternions of lengths from 0.01 to 1000", 5, SMALL, AHEAD, .profiles = BLURRED | OTHERS,
+    {"quaternions", "quaternions of lengths from 0.01 to 1000", 5, SMALL, AHEAD, .drawn_by = BLURRED,
      .make = make_quaternions},
     {"broken", "records with NaN, with infinity or without a rotation, which are left out, among sound ones", 5, SMALL,
-     AHEAD, .profiles = BLURRED | OTHERS, .make = make_broken},
+     AHEAD, .drawn_by = BLURRED, .make = make_broken},
     {"far-away", "a scene and its camera 1,100 from the origin, where floats are coarse", 5, SMALL,
-     .rotation = {1.0, 0.0, 0.0, 0.0}, .focal = {32.0, 32.0}, .eye = {600.0, -350.0, 896.0},
-     .profiles = BLURRED | OTHERS, .make = make_far_away},
-    {"near", "means at the near planes 0.2 and 0.01, before and behind them", 5, SMALL, AT_ORIGIN,
-     .profiles = BLURRED | OTHERS, .make = make_near},
-    {"aside", "large ones beside the picture, whose slopes are clamped", 5, SMALL, AHEAD, .profiles = BLURRED | OTHERS,
+     .rotation = {1.0, 0.0, 0.0, 0.0}, .focal = {32.0, 32.0}, .eye = {600.0, -350.0, 896.0}, .drawn_by = BLURRED,
+     .make = make_far_away},
+    {"near", "means at the near planes 0.2 and 0.01, before and behind them", 5, SMALL, AT_ORIGIN, .drawn_by = BLURRED,
+     .make = make_near},
+    {"aside", "large ones beside the picture, whose slopes are clamped", 5, SMALL, AHEAD, .drawn_by = BLURRED,
      .make = make_aside},
-    {"edge-on", "2D Gaussians seen from the edge, and nearly", 5, SMALL, AHEAD, .profiles = DISCS,
+    {"edge-on", "2D Gaussians seen from the edge, and nearly", 5, SMALL, AHEAD, .drawn_by = DISCS,
      .make = make_edge_on},
 
-    {"splat", "one surface splat, tilted", 6, SMALL, AHEAD, .profiles = 1u << SUITE_SURFACE, .make_splats = make_splat},
-    {"sheet", "splats of one surface, which are blended and normalised", 6, SMALL, AHEAD,
-     .profiles = 1u << SUITE_SURFACE, .make_splats = make_sheet},
-    {"corner", "two surfaces: which splats hide, and which are blended", 6, SMALL, AHEAD,
-     .profiles = 1u << SUITE_SURFACE, .make_splats = make_corner},
+    {"splat", "one surface splat, tilted", 6, SMALL, AHEAD, .drawn_by = SUITE_OF_SURFELS, .make_splats = make_splat},
+    {"sheet", "splats of one surface, which are blended and normalised", 6, SMALL, AHEAD, .drawn_by = SUITE_OF_SURFELS,
+     .make_splats = make_sheet},
+    {"corner", "two surfaces: which splats hide, and which are blended", 6, SMALL, AHEAD, .drawn_by = SUITE_OF_SURFELS,
+     .make_splats = make_corner},
     {"steep", "a floor seen from near, where perspective is strong within a splat", 6, SMALL, AHEAD,
-     .profiles = 1u << SUITE_SURFACE, .make_splats = make_steep},
+     .drawn_by = SUITE_OF_SURFELS, .make_splats = make_steep},
 };
 
 const int cli_n_suite_scenes = sizeof cli_suite_scenes / sizeof *cli_suite_scenes;
@@ -486,6 +483,26 @@ const char *cli_suite_level_about(int level) {
                                                   "adversarial: decisions on the edge, ties, broken records",
                                                   "surface splats, opaque, by the method conic"};
   return about[level - 1];
+}
+
+static int draws(const suite_scene *scene, int profile) {
+  if (profile == SUITE_SURFACE)
+    return scene->drawn_by & SUITE_OF_SURFELS;
+  const conic_profile_row *row = conic_profile_row_of((conic_gaussian_profile)profile);
+  const int is_fainter = row->compensation_least >= 0.0 && row->dilation > 0.0;
+  const unsigned of = row->shape == CONIC_SHAPE_RAY    ? SUITE_OF_RAYS
+                      : row->shape == CONIC_SHAPE_DISC ? SUITE_OF_DISCS
+                      : is_fainter                     ? SUITE_OF_FAINTER_ELLIPSES
+                                                       : SUITE_OF_ELLIPSES;
+  return scene->drawn_by & of && !(scene->drawn_by & SUITE_WITH_CENTER && row->takes_middle) &&
+         !(scene->drawn_by & SUITE_WITH_NEAR && row->shape == CONIC_SHAPE_ELLIPSE && !(row->near_z > 0.0));
+}
+
+unsigned cli_suite_profiles(const suite_scene *scene) {
+  unsigned profiles = 0;
+  for (int p = 0; p < SUITE_PROFILES; p++)
+    profiles |= draws(scene, p) ? 1u << p : 0;
+  return profiles;
 }
 
 void cli_suite_camera(const suite_scene *scene, conic_camera *camera) {

@@ -9,6 +9,7 @@
 #include "core/base/context_struct.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
+#include "core/splats/gaussian_profile.h"
 #include "source/source_kind.h"
 
 /* --- what cannot be together --- */
@@ -216,7 +217,7 @@ static cli_facts ask_of_drawing(const cli_render_job *job, const cli_scene_words
               F(SHAPED)) |
          when(is_lit || !job->camera_path || job->is_turntable || cli_color_is_asked(&job->coloring), F(UPRIGHT)) |
          when(chooses_samples(job, words) || is_rough, F(UNSETTLED)) |
-         when(profile == CONIC_PROFILE_INRIA_2023 || profile == CONIC_PROFILE_2DGS_2024, F(OWN_CENTER)) |
+         when(conic_profile_row_of(profile)->takes_middle, F(OWN_CENTER)) |
          when(strcmp(job->device.name, "cpu") != 0, F(OPENCL)) | when(!job->is_for_looking, F(ASKING)) |
          when(job->deep_path != NULL, F(DEEP)) | when(job->has_mattes, F(MATTES)) |
          when(job->is_transparent, F(TRANSPARENT)) | when(job->shot.view.samples > 1, F(SAMPLED)) |

@@ -16,12 +16,20 @@ static const char *const only_words[] = {"triangles", "surfels", NULL};
 typedef struct library_words {
   const char *methods[CONIC_N_METHODS + 2], *shadings[CONIC_N_SHADINGS + 1], *isas[CONIC_N_ISAS + 1];
   const char *profiles[CONIC_N_GAUSSIAN_PROFILES + 2];
+  char profile_help[640];
 } library_words;
 
 static library_words find_words(void) {
   library_words words = {.methods[CONIC_N_METHODS] = "patch", .profiles[CONIC_N_GAUSSIAN_PROFILES] = "surface"};
   for (int i = 0; i < CONIC_N_GAUSSIAN_PROFILES; i++)
     words.profiles[i] = conic_gaussian_profile_name((conic_gaussian_profile)i);
+  char *to = words.profile_help, *end = to + sizeof words.profile_help;
+  to += snprintf(to, (size_t)(end - to), "how a Gaussian scene is drawn: exact, as a version of another program (");
+  for (int i = CONIC_PROFILE_EXACT + 1; i < CONIC_N_GAUSSIAN_PROFILES; i++)
+    to += snprintf(to, (size_t)(end - to), "%s%s", words.profiles[i], i + 1 < CONIC_N_GAUSSIAN_PROFILES ? ", " : "");
+  snprintf(to, (size_t)(end - to),
+           "), or surface: as opaque splats; inria-2023 and others that take the picture's middle for the camera's "
+           "principal point do so with any camera where :ignore-center stands behind them [exact]");
   for (int i = 0; i < CONIC_N_METHODS; i++)
     words.methods[i] = conic_method_name((conic_method)i);
   for (int i = 0; i < CONIC_N_SHADINGS; i++)
@@ -259,13 +267,9 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .choices = words.methods, .is_given = &raw.is_method_given, .group = "how splats are drawn",
        .intro = "Kernels, filters and samples, and the profiles of Gaussian scenes.", .parse_tail = parse_patch,
        .tail = &raw, .acts = {.on = CLI_FACT(SPLATS)}},
-      {"profile", CLI_CHOICE, &raw.profile, "NAME",
-       "how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5, gsplat-1.5-aa, "
-       "gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque splats; inria-2023 and "
-       "2dgs-2024 with :ignore-center "
-       "behind them take the picture's middle for the camera's principal point, as these do [exact]",
-       .choices = words.profiles, .is_given = &raw.is_profile_given, .is_usual = 1, .parse_tail = parse_ignore_center,
-       .tail = &raw.ignores_center, .acts = {.on = CLI_FACT(GAUSSIANS)}},
+      {"profile", CLI_CHOICE, &raw.profile, "NAME", words.profile_help, .choices = words.profiles,
+       .is_given = &raw.is_profile_given, .is_usual = 1, .parse_tail = parse_ignore_center, .tail = &raw.ignores_center,
+       .acts = {.on = CLI_FACT(GAUSSIANS)}},
       {"quality", CLI_CHOICE, &raw.quality, "HOW",
        "draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and --samples go "
        "first [good]",

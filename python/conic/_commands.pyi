@@ -21,7 +21,8 @@ def render(
     view: Union[None, int, str] = None,
     size: Optional[Union[str, Sequence[int]]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
-        "2dgs-2024", "2dgs-gsplat", "khr-2026", "surface"]] = None,
+        "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
+        "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     quality: Optional[Literal["draft", "good", "final"]] = None,
     samples: Optional[int] = None,
@@ -214,9 +215,10 @@ def render(
         the points, with patch:D by polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the
         length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
-        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque
-        splats; inria-2023 and 2dgs-2024 with :ignore-center behind them take the picture's middle for the
-        camera's principal point, as these do [exact]
+        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026, inria-2023-aa, mip-2023,
+        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
+        others that take the picture's middle for the camera's principal point do so with any camera where
+        :ignore-center stands behind them [exact]
     quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
         --samples go first [good]
     kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N
@@ -308,7 +310,8 @@ def verify(
     only: Optional[Literal["triangles", "surfels"]] = None,
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
-        "2dgs-2024", "2dgs-gsplat", "khr-2026", "surface"]] = None,
+        "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
+        "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
     quality: Optional[Literal["draft", "good", "final"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
@@ -398,9 +401,10 @@ def verify(
         the points, with patch:D by polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the
         length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
-        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque
-        splats; inria-2023 and 2dgs-2024 with :ignore-center behind them take the picture's middle for the
-        camera's principal point, as these do [exact]
+        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026, inria-2023-aa, mip-2023,
+        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
+        others that take the picture's middle for the camera's principal point do so with any camera where
+        :ignore-center stands behind them [exact]
     quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
         --samples go first [good]
     kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N
@@ -501,7 +505,8 @@ def judge(
     only: Optional[Literal["triangles", "surfels"]] = None,
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
-        "2dgs-2024", "2dgs-gsplat", "khr-2026", "surface"]] = None,
+        "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
+        "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
     quality: Optional[Literal["draft", "good", "final"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
@@ -600,9 +605,10 @@ def judge(
         the points, with patch:D by polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the
         length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
-        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque
-        splats; inria-2023 and 2dgs-2024 with :ignore-center behind them take the picture's middle for the
-        camera's principal point, as these do [exact]
+        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026, inria-2023-aa, mip-2023,
+        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
+        others that take the picture's middle for the camera's principal point do so with any camera where
+        :ignore-center stands behind them [exact]
     quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
         --samples go first [good]
     kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N
@@ -693,7 +699,8 @@ def explain(
     only: Optional[Literal["triangles", "surfels"]] = None,
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
-        "2dgs-2024", "2dgs-gsplat", "khr-2026", "surface"]] = None,
+        "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
+        "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
     quality: Optional[Literal["draft", "good", "final"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
@@ -779,9 +786,10 @@ def explain(
         the points, with patch:D by polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the
         length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
-        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque
-        splats; inria-2023 and 2dgs-2024 with :ignore-center behind them take the picture's middle for the
-        camera's principal point, as these do [exact]
+        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026, inria-2023-aa, mip-2023,
+        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
+        others that take the picture's middle for the camera's principal point do so with any camera where
+        :ignore-center stands behind them [exact]
     quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
         --samples go first [good]
     kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N
@@ -1332,7 +1340,8 @@ def gradient(
     only: Optional[Literal["triangles", "surfels"]] = None,
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
-        "2dgs-2024", "2dgs-gsplat", "khr-2026", "surface"]] = None,
+        "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
+        "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
     quality: Optional[Literal["draft", "good", "final"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
@@ -1411,9 +1420,10 @@ def gradient(
         the points, with patch:D by polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the
         length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
-        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque
-        splats; inria-2023 and 2dgs-2024 with :ignore-center behind them take the picture's middle for the
-        camera's principal point, as these do [exact]
+        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026, inria-2023-aa, mip-2023,
+        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
+        others that take the picture's middle for the camera's principal point do so with any camera where
+        :ignore-center stands behind them [exact]
     quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
         --samples go first [good]
     kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N
