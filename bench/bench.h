@@ -226,8 +226,9 @@ conic_status cli_bench_gaussians_read(cli_session *session, const char *path, co
 conic_status cli_bench_gaussians_make(cli_session *session, size_t count, cli_bench_scene *scene);
 void cli_bench_gaussians_release(cli_session *session, cli_bench_scene *scene);
 
-/* Draws a frame of the line, Z, count and id if the image has them; and, which is no part of the frame, puts its
- * colours into the image, clears what no Gaussians have, and counts pairs of a Gaussian and a pixel as fragments. */
+/* Draws a frame of the line, Z, count and id if the image has them, in which pairs of a Gaussian and a pixel are
+ * fragments. The second, which is no part of the frame, puts its colours into the image, clears what no Gaussians have,
+ * and counts covered pixels. */
 conic_status cli_bench_gaussians_draw(conic_context *context, cli_bench_scene *scene, const conic_camera *camera,
                                       const cli_bench_line *line, const conic_image *image,
                                       conic_render_statistics *statistics);

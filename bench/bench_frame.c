@@ -184,10 +184,8 @@ static conic_status draw_frames(bench *b, const cli_bench_patience *patience, cl
   line->statistics.fragments = n_fragments;
   conic_render_statistics statistics;
   status = draw_one(b, &b->camera, &pictures->drawn, &statistics);
-  if (status == CONIC_OK && b->scene->is_gaussian) {
+  if (status == CONIC_OK && b->scene->is_gaussian)
     cli_bench_gaussians_show(b->scene, &pictures->drawn, &statistics);
-    line->statistics.fragments = statistics.fragments;
-  }
   note_difference(&pictures->reference, &pictures->drawn, line);
   return status;
 }

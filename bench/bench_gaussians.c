@@ -82,6 +82,7 @@ static conic_status keep_room(cli_bench_scene *scene, int width, int height) {
 
 static void tell_frame(const conic_gaussian_statistics *s, double ms, conic_render_statistics *statistics) {
   memset(statistics, 0, sizeof *statistics);
+  statistics->fragments = s->pairs;
   statistics->splats_in = s->gaussians_in;
   statistics->splats_drawn = s->gaussians_drawn;
   statistics->splats_culled = s->gaussians_culled;
@@ -122,14 +123,12 @@ void cli_bench_gaussians_show(const cli_bench_scene *scene, conic_image *image, 
   static const unsigned filled =
       1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_COUNT | 1u << CONIC_PLANE_ID;
   float *rgba = image->planes[CONIC_PLANE_RGBA];
-  const uint32_t *count = image->planes[CONIC_PLANE_COUNT];
-  statistics->fragments = statistics->pixels_covered = 0;
+  statistics->pixels_covered = 0;
   for (size_t i = 0; i < n; i++) {
     for (size_t c = 0; c < 3; c++)
       rgba[4 * i + c] = from->rgb[3 * i + c];
     rgba[4 * i + 3] = 1.0f - from->transparency[i];
     statistics->pixels_covered += from->transparency[i] < 1.0f;
-    statistics->fragments += count ? count[i] : 0;
   }
   for (int plane = 0; plane < CONIC_N_PLANES; plane++) /* what Gaussians do not have */
     if (image->planes[plane] && !(filled >> plane & 1))

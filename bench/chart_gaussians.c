@@ -15,7 +15,6 @@ typedef struct gaussian_chart_job {
   conic_camera camera, sparse; /* the second sees the centre of every step-th pixel of the first */
   conic_gaussian_reference truths[CLI_N_TRUTHS];
   float *rgb;
-  uint32_t *count;
 } gaussian_chart_job;
 
 /* Of an odd step, the middle of so many pixels is the centre of one. */
@@ -56,8 +55,7 @@ static conic_status open_chart(gaussian_chart_job *job) {
   chart->n_truths = job->gaussians.scale[2] ? 2 : 1;
   size_t n = (size_t)job->camera.width * (size_t)job->camera.height;
   job->rgb = malloc(n * 3 * sizeof *job->rgb);
-  job->count = malloc(n * sizeof *job->count);
-  return job->rgb && job->count ? CONIC_OK : CONIC_ERROR_MEMORY;
+  return job->rgb ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
 
 static conic_status find_truths(gaussian_chart_job *job) {
@@ -109,17 +107,12 @@ static void compare_truth(const gaussian_chart_job *job, const conic_gaussian_re
 
 static conic_status measure_profile(gaussian_chart_job *job, conic_gaussian_profile profile) {
   cli_profile_point *point = &job->chart->points[job->chart->n_points++];
-  conic_gaussian_planes counted = {.width = job->camera.width, .height = job->camera.height, .count = job->count};
   conic_gaussian_options options;
   conic_gaussian_options_init(&options);
   options.profile = point->profile = profile;
   conic_status status = time_profile(job, &options, point);
   for (int i = 0; i < job->chart->n_truths && status == CONIC_OK; i++)
     compare_truth(job, &job->truths[i], &point->errors[i]);
-  if (status == CONIC_OK)
-    status = conic_gaussians_render(job->context, &job->gaussians, &job->camera, &options, &counted, NULL);
-  for (size_t i = 0; status == CONIC_OK && i < (size_t)counted.width * (size_t)counted.height; i++)
-    point->pairs += job->count[i];
   return status;
 }
 
@@ -155,6 +148,5 @@ conic_status cli_gaussian_chart_measure(cli_session *session, cli_gaussian_chart
     conic_gaussian_reference_release(session->context, &job.truths[i]);
   conic_gaussians_release(session->context, &job.gaussians);
   free(job.rgb);
-  free(job.count);
   return status;
 }

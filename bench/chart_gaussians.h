@@ -18,7 +18,6 @@ typedef struct cli_profile_point {
   conic_gaussian_profile profile;
   conic_gaussian_statistics statistics; /* of the fastest frame */
   double ms;                            /* its stages together */
-  size_t pairs;                         /* of a Gaussian and a pixel in which it was composited */
   cli_profile_error errors[CLI_N_TRUTHS];
 } cli_profile_point;
 

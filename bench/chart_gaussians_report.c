@@ -15,7 +15,7 @@ static void write_profiles(FILE *to, const void *cookie) {
     const conic_gaussian_statistics *s = &p->statistics;
     fprintf(to, "%s,%.4f,%.4f,%.4f,%.4f,%.4f,%zu,%zu,%zu", conic_gaussian_profile_name(p->profile), p->ms,
             1e3 * s->seconds_setup, 1e3 * s->seconds_sort, 1e3 * s->seconds_bin, 1e3 * s->seconds_composite,
-            s->gaussians_drawn, s->entries, p->pairs);
+            s->gaussians_drawn, s->entries, (size_t)s->pairs);
     for (int i = 0; i < chart->n_truths; i++)
       fprintf(to, ",%.6g,%.6g,%.3f,%d", p->errors[i].max, p->errors[i].rmse, p->errors[i].psnr, p->errors[i].is_front);
     fputs("\n", to);
@@ -65,7 +65,7 @@ void cli_gaussian_chart_print(const cli_gaussian_chart *chart) {
   puts("");
   for (int k = 0; k < chart->n_points; k++) {
     const cli_profile_point *p = &chart->points[k];
-    printf("%-14s %9.2f %10.3f", conic_gaussian_profile_name(p->profile), p->ms, 1e-6 * (double)p->pairs);
+    printf("%-14s %9.2f %10.3f", conic_gaussian_profile_name(p->profile), p->ms, 1e-6 * (double)p->statistics.pairs);
     for (int i = 0; i < chart->n_truths; i++)
       printf("  %*s  %-9.3g %-9.3g %6.2f%s", (int)sizeof "overlap" - 1 - (i == 1), "", p->errors[i].max,
              p->errors[i].rmse, p->errors[i].psnr, p->errors[i].is_front ? "*" : " ");
@@ -82,7 +82,7 @@ void cli_gaussian_chart_report(cli_json *json, const cli_gaussian_chart *chart) 
     cli_json_object(json, NULL);
     cli_json_text(json, "profile", conic_gaussian_profile_name(p->profile));
     cli_json_number(json, "ms", p->ms);
-    cli_json_count(json, "pairs", p->pairs);
+    cli_json_count(json, "pairs", p->statistics.pairs);
     for (int i = 0; i < chart->n_truths; i++) {
       cli_json_object(json, cli_truth_names[i]);
       cli_json_number(json, "max", p->errors[i].max);

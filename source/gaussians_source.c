@@ -224,13 +224,15 @@ static void clear_other_planes(const conic_image *image) {
              conic_image_pixels(image) * (size_t)conic_plane_describe((conic_plane)i)->n_channels * 4);
 }
 
-static void tell_drawing(const gaussians_source *g, uint64_t n_covered, conic_render_statistics *statistics) {
+static void tell_drawing(const gaussians_source *g, uint64_t n_pairs, uint64_t n_covered,
+                         conic_render_statistics *statistics) {
   const conic_gaussian_statistics *s = &g->drawn;
   memset(statistics, 0, sizeof *statistics);
   statistics->splats_in = s->gaussians_in;
   statistics->splats_drawn = s->gaussians_drawn;
   statistics->splats_culled = s->gaussians_culled;
   statistics->splats_skipped = s->gaussians_skipped;
+  statistics->fragments = n_pairs;
   statistics->pixels_covered = n_covered;
   statistics->threads = s->device_units ? (int)s->device_units : conic_parallel_threads(g->base.context);
   statistics->tile = s->tile;
@@ -275,6 +277,7 @@ static conic_status draw_gaussian_window(conic_source_windows *w, const conic_wi
   const conic_gaussian_window fine_window = {{n * window->x_begin, n * window->y_begin},
                                              {n * window->x_end, n * window->y_end}};
   fine_picture fine = {.samples = n, .is_opaque = w->render.has_background};
+  const uint64_t n_before = conic_gaussian_picture_statistics(w->own)->pairs;
   fine.planes.width = n * image->width;
   fine.planes.height = n * image->height;
   conic_status status = allocate_planes(context, image, &fine);
@@ -285,7 +288,7 @@ static conic_status draw_gaussian_window(conic_source_windows *w, const conic_wi
     uint64_t n_covered = reduce_samples(&fine, image);
     image->is_display = !g->gaussians.is_linear;
     g->drawn = *conic_gaussian_picture_statistics(w->own);
-    tell_drawing(g, n_covered, statistics);
+    tell_drawing(g, g->drawn.pairs - n_before, n_covered, statistics);
   }
   release_planes(context, &fine);
   return status;

@@ -1,5 +1,7 @@
 /* A picture of Gaussians: set up, put in order, binned, composited. */
 
+#include <stdatomic.h>
+
 #include "core/base/base.h"
 #include "core/image/view_arguments.h"
 #include "gaussians/draw/gaussian_device.h"
@@ -33,6 +35,7 @@ struct conic_gaussian_picture {
   size_t n_ordered;
   conic_gaussian_bins bins;
   void **rooms; /* by thread */
+  atomic_uint_fast64_t n_pairs;
 };
 
 typedef conic_gaussian_picture frame;
@@ -128,7 +131,14 @@ static conic_gaussian_target target_of(const frame *f) {
 }
 
 static int wants_all(const conic_gaussian_planes *p) {
-  return p->z || p->median_z || p->inverse_z || p->normal || p->count || p->id || p->last;
+  return p->z || p->median_z || p->inverse_z || p->normal || p->id || p->last;
+}
+
+static uint64_t sum_of(const uint32_t *counts, size_t n) {
+  uint64_t sum = 0;
+  for (size_t i = 0; i < n; i++)
+    sum += counts[i];
+  return sum;
 }
 
 static void composite_tile(void *data, size_t i_tile, int i_thread) {
@@ -154,6 +164,7 @@ static void composite_tile(void *data, size_t i_tile, int i_thread) {
   tile.x -= f->window->begin[0]; /* where the planes begin */
   tile.y -= f->window->begin[1];
   conic_gaussian_tile_end(&target, &tile);
+  atomic_fetch_add_explicit(&f->n_pairs, sum_of(tile.count, CONIC_GAUSSIAN_TILE_PIXELS), memory_order_relaxed);
 }
 
 /* Room for the longest list. */
@@ -181,17 +192,27 @@ static conic_status composite_here(frame *f) {
                             : status;
 }
 
-static conic_status composite_on_device(const frame *f) {
-  const conic_gaussian_composition composition = {.rules = &f->rules,
-                                                  .n_drawn = f->n,
-                                                  .n = f->set->count,
-                                                  .footprints = f->footprints,
-                                                  .rays = f->rays,
-                                                  .normals = (const float(*)[3])f->normals,
-                                                  .wants_all = wants_all(f->planes),
-                                                  .bins = &f->bins,
-                                                  .target = target_of(f)};
-  return f->options.device->composite(f->options.device, &composition);
+static conic_status composite_on_device(frame *f) {
+  const size_t n = (size_t)f->planes->width * (size_t)f->planes->height;
+  uint32_t *counts = f->planes->count ? NULL : conic_memory_allocate(f->context, n, sizeof *counts);
+  conic_gaussian_composition composition = {.rules = &f->rules,
+                                            .n_drawn = f->n,
+                                            .n = f->set->count,
+                                            .footprints = f->footprints,
+                                            .rays = f->rays,
+                                            .normals = (const float(*)[3])f->normals,
+                                            .wants_all = wants_all(f->planes),
+                                            .bins = &f->bins,
+                                            .target = target_of(f)};
+  if (!composition.target.count)
+    composition.target.count = counts;
+  if (!composition.target.count)
+    return CONIC_ERROR_MEMORY;
+  conic_status status = f->options.device->composite(f->options.device, &composition);
+  if (status == CONIC_OK)
+    f->n_pairs += sum_of(composition.target.count, n);
+  conic_memory_release(f->context, counts);
+  return status;
 }
 
 static void release_window(frame *f) {
@@ -228,6 +249,7 @@ static conic_status composite_window(frame *f) {
   if (status == CONIC_OK)
     status = f->options.device ? composite_on_device(f) : composite_here(f);
   f->statistics.seconds_composite += conic_seconds_now() - now;
+  f->statistics.pairs = f->n_pairs;
   return status;
 }
 

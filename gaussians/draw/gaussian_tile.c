@@ -16,7 +16,6 @@ static void composite_planes(const conic_gaussian_list *list, uint32_t i_footpri
     tile->id[at] = list->footprints[i_footprint].index;
   }
   tile->last[at] = list->footprints[i_footprint].index;
-  tile->count[at]++;
   for (int c = 0; c < 3 && list->normals; c++)
     tile->normal[c][at] += w * list->normals[i_footprint][c];
 }
@@ -32,6 +31,7 @@ static int composite_one(const conic_gaussian_list *list, uint32_t i_footprint, 
   for (int c = 0; c < 3; c++)
     tile->rgb[c][at] += w * f->color[c];
   tile->T[at] = after;
+  tile->count[at]++;
   if (list->wants_all)
     composite_planes(list, i_footprint, z, w, before, after, tile, at);
   return 1;

@@ -53,7 +53,7 @@ typedef struct conic_gaussian_list {
   const CONIC_STORED conic_gaussian_footprint *footprints;
   const CONIC_STORED conic_gaussian_ray *rays; /* by footprint; of shapes that have them */
   const CONIC_STORED float (*normals)[3];      /* by footprint; null: not wanted */
-  int wants_all;                               /* else T and rgb alone */
+  int wants_all;                               /* else T, rgb and count alone */
   const CONIC_STORED uint32_t *entries;
   size_t n;
   CONIC_STORED void *room; /* of what is ordered along rays: CONIC_GAUSSIAN_ROOM bytes for each entry and 16 more;

@@ -42,7 +42,8 @@ typedef struct response {
 CONIC_INLINE pixels take_pixels(const conic_gaussian_tile *tile, unsigned going, size_t at, int wants_all) {
   pixels p = {.goes_on = lanes_mask_of(going),
               .T = lanes_load(tile->T + at),
-              .rgb = {lanes_load(tile->rgb[0] + at), lanes_load(tile->rgb[1] + at), lanes_load(tile->rgb[2] + at)}};
+              .rgb = {lanes_load(tile->rgb[0] + at), lanes_load(tile->rgb[1] + at), lanes_load(tile->rgb[2] + at)},
+              .count = lanes_load_indices(tile->count + at)};
   if (!wants_all)
     return p;
   p.sum = lanes_load(tile->sum + at);
@@ -52,7 +53,6 @@ CONIC_INLINE pixels take_pixels(const conic_gaussian_tile *tile, unsigned going,
   p.heaviest = lanes_load(tile->heaviest + at);
   for (int k = 0; k < 3; k++)
     p.normal[k] = lanes_load(tile->normal[k] + at);
-  p.count = lanes_load_indices(tile->count + at);
   p.id = lanes_load_indices(tile->id + at);
   p.last = lanes_load_indices(tile->last + at);
   return p;
@@ -62,6 +62,7 @@ CONIC_INLINE void put_pixels(conic_gaussian_tile *tile, const pixels *p, size_t 
   lanes_store(tile->T + at, p->T);
   for (int k = 0; k < 3; k++)
     lanes_store(tile->rgb[k] + at, p->rgb[k]);
+  lanes_store_indices(tile->count + at, p->count);
   if (!wants_all)
     return;
   lanes_store(tile->sum + at, p->sum);
@@ -71,7 +72,6 @@ CONIC_INLINE void put_pixels(conic_gaussian_tile *tile, const pixels *p, size_t 
   lanes_store(tile->heaviest + at, p->heaviest);
   for (int k = 0; k < 3; k++)
     lanes_store(tile->normal[k] + at, p->normal[k]);
-  lanes_store_indices(tile->count + at, p->count);
   lanes_store_indices(tile->id + at, p->id);
   lanes_store_indices(tile->last + at, p->last);
 }
@@ -90,7 +90,6 @@ CONIC_INLINE void composite_planes_in_lanes(const scene *s, const response *r, l
   p->heaviest = lanes_select(is_heavier, w, p->heaviest);
   p->id = lanes_select_indices(is_heavier, r->index, p->id);
   p->last = lanes_select_indices(goes, r->index, p->last);
-  p->count = lanes_increment(goes, p->count);
   for (int k = 0; k < 3; k++)
     p->normal[k] = p->normal[k] + lanes_keep(goes, w * r->normal[k]);
 }
@@ -105,6 +104,7 @@ CONIC_INLINE void composite_lanes(const scene *s, const response *r, pixels *p, 
     p->rgb[k] = p->rgb[k] + lanes_keep(goes, w * r->color[k]);
   if (wants_all)
     composite_planes_in_lanes(s, r, goes, w, after, p);
+  p->count = lanes_increment(goes, p->count);
   p->T = lanes_select(goes, after, p->T);
 }
 

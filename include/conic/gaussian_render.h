@@ -80,7 +80,8 @@ typedef struct conic_gaussian_statistics {
   conic_isa isa;         /* what the hot loops used */
   int tile;              /* edge in pixels */
   uint64_t device_units; /* compute units of the device that composited; 0: the processor did */
-  uint64_t reserved[7];
+  uint64_t pairs;        /* of a Gaussian and a pixel that it was blended into */
+  uint64_t reserved[6];
 } conic_gaussian_statistics;
 
 /* Draws into the planes that are there. The bits are the same for any number of threads and every instruction set. Null

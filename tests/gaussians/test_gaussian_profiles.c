@@ -194,6 +194,23 @@ static void test_permuted(conic_context *context) {
   conic_gaussians_release(context, &turned);
 }
 
+/* As many as the planes count, whether they are wanted or not. */
+static void check_pairs(conic_context *context, const conic_gaussians *scene, const conic_camera *camera,
+                        const conic_gaussian_options *options, const conic_gaussian_planes *planes, uint64_t n_pairs) {
+  conic_gaussian_planes colors = {.width = planes->width, .height = planes->height, .rgb = planes->rgb};
+  conic_gaussian_options own = *options;
+  conic_gaussian_statistics s;
+  uint64_t sum = 0;
+  for (size_t i = 0; i < (size_t)planes->width * (size_t)planes->height; i++)
+    sum += planes->count[i];
+  CHECK(sum > 0 && sum == n_pairs);
+  for (int isa = CONIC_ISA_AUTO; isa <= CONIC_ISA_SCALAR; isa++) {
+    own.isa = (conic_isa)isa;
+    CHECK_OK(conic_gaussians_render(context, scene, camera, &own, &colors, &s));
+    CHECK(s.pairs == n_pairs);
+  }
+}
+
 /* What breaks others: counted or drawn, and never a number that is none. */
 static void test_hard(conic_context *context) {
   enum { N = 14 };
@@ -229,6 +246,7 @@ static void test_hard(conic_context *context) {
       CHECK(p.rgb[i] >= 0.0f && p.rgb[i] < 100.0f);
     for (size_t i = 0; i < 1600; i++)
       CHECK(p.transparency[i] >= 0.0f && p.transparency[i] <= 1.0f && p.z[i] - p.z[i] == 0.0f);
+    check_pairs(context, &scene, &camera, &options, &p, s.pairs);
     picture_release(&p);
   }
   conic_gaussians_release(context, &scene);

@@ -59,7 +59,7 @@ static void compare_ways(const desk *d, const conic_gaussians *scene, const coni
     conic_gaussian_planes other = spoiled_planes(camera);
     options.device = &device_in_way(d, &ways[i])->gaussian_device;
     CHECK_OK(conic_gaussians_render(d->context, scene, camera, &options, &other, &of_device));
-    CHECK(of_device.device_units > 0 && of_device.entries == s.entries);
+    CHECK(of_device.device_units > 0 && of_device.entries == s.entries && of_device.pairs == s.pairs);
     if (!picture_is_same(&p, &other))
       fprintf(stderr, "%s, %s: %s differs\n", what, conic_gaussian_profile_name(options.profile), ways[i].name);
     CHECK(picture_is_same(&p, &other));
