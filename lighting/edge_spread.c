@@ -34,50 +34,79 @@ static pixel_range pixels_about(const conic_edge_spread *s, size_t x, size_t y) 
                        y + reach < height ? y + reach + 1 : height};
 }
 
-/* Whether no pixel is farther from `here` than the step. */
-static int is_one_surface(const conic_edge_spread *s, const pixel_range *range, float here, float step) {
-  const float *z = s->image->planes[CONIC_PLANE_Z];
-  float least = s->samples > 1 ? here - step : 0.0f;
-  for (size_t j = range->top; j < range->bottom; j++)
-    for (size_t i = range->left; i < range->right; i++) {
-      float there = z[pixel_at(s, i, j)];
-      if (!(there > least) || there > here + step)
-        return 0;
+/* The least and the greatest depth of a column of pixels; the least is below all numbers where one is none. */
+typedef struct column_depths {
+  float *least, *greatest;
+} column_depths;
+
+static void look_down_columns(const conic_edge_spread *s, size_t y, column_depths *columns) {
+  const pixel_range range = pixels_about(s, 0, y);
+  const size_t width = (size_t)s->image->width;
+  for (size_t row = range.top; row < range.bottom; row++) {
+    const float *z = (const float *)s->image->planes[CONIC_PLANE_Z] + pixel_at(s, 0, row);
+    float *restrict least = columns->least, *restrict greatest = columns->greatest;
+    const int is_first = row == range.top;
+    for (size_t x = 0; x < width; x++) {
+      float low = z[x] == z[x] ? z[x] : -HUGE_VALF, so_far = is_first ? HUGE_VALF : least[x];
+      float high = z[x], so_high = is_first ? -HUGE_VALF : greatest[x];
+      least[x] = low < so_far ? low : so_far;
+      greatest[x] = high > so_high ? high : so_high;
     }
-  return 1;
+  }
+}
+
+/* Whether no pixel about it is farther than the step. */
+static int is_one_surface(const conic_edge_spread *s, const pixel_range *range, const column_depths *columns,
+                          float here, float step) {
+  float least = s->samples > 1 ? here - step : 0.0f, deepest = here + step;
+  int is_far = 0;
+  for (size_t i = range->left; i < range->right; i++)
+    is_far |= !(columns->least[i] > least) | (columns->greatest[i] > deepest);
+  return !is_far;
 }
 
 /* Whether a pixel is at an edge, where it should not use its own light. Splats stick out where a surface turns away.
  * Those of the far side are then seen from behind: they take the visible side for their outer one, on which there is no
  * light. And several samples on two surfaces have a mean normal that is neither's. */
-static int is_at_edge(const conic_edge_spread *s, size_t x, size_t y) {
+static int is_at_edge(const conic_edge_spread *s, const column_depths *columns, size_t x, size_t y) {
   static const float greatest_cosine = 1.5f; /* the normals of receivers are at most √2 long */
   float here = ((const float *)s->image->planes[CONIC_PLANE_Z])[pixel_at(s, x, y)];
   pixel_range range = pixels_about(s, x, y);
-  return !is_one_surface(s, &range, here, step_at(s, greatest_cosine)) &&
-         !is_one_surface(s, &range, here, depth_of_step(s, x, y));
+  return !is_one_surface(s, &range, columns, here, step_at(s, greatest_cosine)) &&
+         !is_one_surface(s, &range, columns, here, depth_of_step(s, x, y));
 }
 
-static void find_receivers_at_edges(void *data, size_t y) {
+static void find_receivers_at_edges(void *data, size_t y, int i_thread) {
   const conic_edge_spread *s = data;
-  for (size_t x = 0; x < (size_t)s->image->width; x++)
-    if (s->kind[pixel_at(s, x, y)] == RECEIVER && is_at_edge(s, x, y))
+  const size_t width = (size_t)s->image->width;
+  float *room = s->columns + 2 * width * (size_t)i_thread;
+  column_depths columns = {room, room + width};
+  if (!memchr(s->kind + pixel_at(s, 0, y), RECEIVER, width))
+    return;
+  look_down_columns(s, y, &columns);
+  for (size_t x = 0; x < width; x++)
+    if (s->kind[pixel_at(s, x, y)] == RECEIVER && is_at_edge(s, &columns, x, y))
       s->kind[pixel_at(s, x, y)] = RECEIVER_AT_EDGE;
 }
 
-static int has_receiver_about(const conic_edge_spread *s, size_t x, size_t y) {
-  pixel_range range = pixels_about(s, x, y);
-  for (size_t j = range.top; j < range.bottom; j++)
-    for (size_t i = range.left; i < range.right; i++)
-      if (s->kind[pixel_at(s, i, j)] != NO_RECEIVER)
-        return 1;
-  return 0;
-}
-
-static void find_alone(void *data, size_t y) {
+/* Pixels that are no receivers of their own, and have one about them or are at an edge. */
+static void find_means(void *data, size_t y, int i_thread) {
   const conic_edge_spread *s = data;
-  for (size_t x = 0; x < (size_t)s->image->width; x++)
-    s->is_alone[pixel_at(s, x, y)] = s->kind[pixel_at(s, x, y)] == NO_RECEIVER && !has_receiver_about(s, x, y);
+  const size_t width = (size_t)s->image->width, reach = s->edge_px;
+  const pixel_range range = pixels_about(s, 0, y);
+  unsigned char *restrict columns = (unsigned char *)(s->columns + 2 * width * (size_t)i_thread);
+  unsigned char *restrict takes_mean = s->takes_mean + pixel_at(s, 0, y);
+  const unsigned char *kind = s->kind + pixel_at(s, 0, y);
+  memset(columns, 0, width + 2 * reach); /* as many beside the picture */
+  for (size_t row = range.top; row < range.bottom; row++)
+    for (size_t x = 0; x < width; x++)
+      columns[reach + x] |= s->kind[pixel_at(s, x, row)];
+  memset(takes_mean, 0, width);
+  for (size_t shift = 0; shift <= 2 * reach; shift++)
+    for (size_t x = 0; x < width; x++)
+      takes_mean[x] |= columns[shift + x];
+  for (size_t x = 0; x < width; x++)
+    takes_mean[x] = takes_mean[x] != 0 && kind[x] != RECEIVER;
 }
 
 static void name_receivers(conic_edge_spread *s) {
@@ -105,7 +134,7 @@ static int mean_about(const conic_edge_spread *s, size_t x, size_t y, unsigned c
   return n > 0.0f;
 }
 
-/* What a pixel gets that is neither a receiver, which gets its own value, nor alone: one at an edge the mean of its
+/* What a pixel gets that takes a mean: one at an edge the mean of its
  * surface's receivers around it; a pixel that is no receiver, but at the border of what is drawn, the mean of the
  * receivers around it. */
 static float spread_at(const conic_edge_spread *s, size_t x, size_t y) {
@@ -123,14 +152,16 @@ static float spread_at(const conic_edge_spread *s, size_t x, size_t y) {
 
 static void fill_row(void *data, size_t y) {
   const conic_edge_spread *s = data;
-  size_t width = (size_t)s->image->width, first = pixel_at(s, 0, y);
-  const unsigned char *kind = s->kind + first, *is_alone = s->is_alone + first;
-  float *filled = s->filled + first;
-  for (size_t x = 0; x < width; x++)
-    filled[x] = kind[x] == RECEIVER ? s->own[first + x] : s->otherwise;
-  for (size_t x = 0; x < width; x++)
-    if (kind[x] != RECEIVER && !is_alone[x])
-      filled[x] = spread_at(s, x, y);
+  const size_t width = (size_t)s->image->width, first = pixel_at(s, 0, y);
+  const unsigned char *kind = s->kind + first, *takes_mean = s->takes_mean + first;
+  const float *own = s->own + first, otherwise = s->otherwise;
+  float *restrict filled = s->filled + first;
+  for (size_t x = 0; x < width; x++) {
+    float value = own[x];
+    filled[x] = kind[x] == RECEIVER ? value : otherwise;
+  }
+  for (const unsigned char *next = takes_mean; (next = memchr(next, 1, width - (size_t)(next - takes_mean))); next++)
+    filled[next - takes_mean] = spread_at(s, (size_t)(next - takes_mean), y);
 }
 
 void conic_edge_spread_fill(conic_edge_spread *s, const float *of_receivers, float otherwise) {
@@ -155,18 +186,20 @@ conic_status conic_edge_spread_init(conic_context *context, const conic_camera *
   s->own = conic_memory_allocate(context, n, sizeof *s->own);
   s->filled = conic_memory_allocate(context, n, sizeof *s->filled);
   s->kind = conic_memory_allocate(context, n, 2);
-  if (!s->own || !s->filled || !s->kind)
+  s->columns = conic_memory_allocate(context, (size_t)image->width + 2 * MOST_EDGE_PX,
+                                     2 * (size_t)conic_context_threads(context) * sizeof *s->columns);
+  if (!s->own || !s->filled || !s->kind || !s->columns)
     return CONIC_ERROR_MEMORY;
-  s->is_alone = s->kind + n;
+  s->takes_mean = s->kind + n;
   name_receivers(s);
   if (s->epsilon > 0.0f || samples > 1)
     conic_parallel_for(context, (size_t)image->height, find_receivers_at_edges, s);
-  conic_parallel_for(context, (size_t)image->height, find_alone, s);
+  conic_parallel_for(context, (size_t)image->height, find_means, s);
   return CONIC_OK;
 }
 
 void conic_edge_spread_release(conic_edge_spread *s) {
   if (!s->context)
     return;
-  conic_memory_release_these(s->context, s->kind, s->filled, s->own);
+  conic_memory_release_these(s->context, s->columns, s->kind, s->filled, s->own);
 }

@@ -11,14 +11,15 @@ typedef struct conic_edge_spread {
   const conic_image *image;
   const conic_receivers *receivers;
   conic_camera_rays rays;
-  float epsilon;           /* the casters' */
-  int samples;             /* N × N of the picture's pixel */
-  size_t edge_px;          /* how far splats may stick out */
-  unsigned char *kind;     /* of each pixel */
-  unsigned char *is_alone; /* of each pixel: neither it nor one about it is a receiver */
-  float *own;              /* of each pixel that is a receiver: what it received */
-  float *filled;           /* of each pixel: what it gets from that */
-  float otherwise;         /* for pixels that get nothing */
+  float epsilon;             /* the casters' */
+  int samples;               /* N × N of the picture's pixel */
+  size_t edge_px;            /* how far splats may stick out */
+  unsigned char *kind;       /* of each pixel */
+  unsigned char *takes_mean; /* of each pixel: 1 where it gets what others about it received */
+  float *own;                /* of each pixel that is a receiver: what it received */
+  float *filled;             /* of each pixel: what it gets from that */
+  float otherwise;           /* for pixels that get nothing */
+  float *columns;            /* room of each thread */
 } conic_edge_spread;
 
 /* Finds which pixels of the picture, which has Z and N, are at edges. Keeps references to the arguments. Errors:

@@ -97,7 +97,7 @@ static inline void receive_one(const conic_light_map *map, const conic_receivers
 }
 
 static void receive(const conic_light_map *map, const conic_receivers *receivers, size_t begin, size_t end,
-                    int is_smooth, float *visible, float *facing) {
+                    int is_smooth, float *restrict visible, float *restrict facing) {
   const conic_light_map m = *map;
   const conic_receivers from = *receivers;
   if (m.is_lamp)
