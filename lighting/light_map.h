@@ -5,6 +5,7 @@
 #include "conic/lighting.h"
 #include "core/lanes/instruction_sets.h"
 #include "lighting/receivers.h"
+#include "raster/tiles/finish.h"
 
 /* A map as receivers are compared with it. A receiver at p, from the receivers' origin, is at rotation·p in the map's
  * camera space, with z measured from `distance` on. */
@@ -40,10 +41,24 @@ typedef void conic_receive_function(const conic_light_map *map, const conic_rece
 void conic_light_map_place(const conic_casters *casters, const conic_receivers *receivers, const double direction[3],
                            double texel, int most, conic_camera *camera, double *near_z, conic_light_map *map);
 
-/* The loop that takes most of the time of receiving light. */
+/* A row of a picture's pixels. */
+typedef struct conic_shaded_row {
+  const conic_finish *finish;
+  const conic_camera_rays *rays;
+  const float *albedo, *normal; /* 3 a pixel; albedo is of what covers the pixel, times its coverage */
+  const float *coverage;        /* 1 a pixel; where it is 0, colours are no numbers */
+  size_t y;
+} conic_shaded_row;
+
+/* Fills `shaded`, 3 a pixel, with the colours of what the pixels from begin to before end show, as if it covered them,
+ * by the lights of `finish`; the first pixel's is at 0. */
+typedef void conic_shade_function(const conic_shaded_row *row, size_t begin, size_t end, float *shaded);
+
+/* The loops that take most of the time of receiving light. */
 
 typedef struct conic_lighting_loops {
   conic_receive_function *receive;
+  conic_shade_function *shade;
 } conic_lighting_loops;
 
 CONIC_DECLARE_LOOPS(conic_lighting_loops);

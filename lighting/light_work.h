@@ -67,6 +67,7 @@ typedef struct conic_light_work {
   conic_receivers receivers;
   conic_map_room room;
   conic_edge_spread spread;
+  float *rows;    /* room of each thread: 4 a pixel of a row */
   float *hidden;  /* of each pixel: the unexposed colour that hidden lights would make; null: no colours */
   float *visible; /* of each receiver */
   conic_sky_sums sums;

@@ -21,15 +21,42 @@ static void receive_light(void *data, size_t i_item) {
   r->l->room.loops.receive(r->map, &r->l->receivers, begin, end, 1, r->l->visible + begin, facing);
 }
 
-static void hide_row(void *data, size_t y) {
+typedef struct shaded_pixels {
+  const float *colors, *coverage; /* 3 and 1 a pixel */
+} shaded_pixels;
+
+/* Shades the row's pixels from begin to before end by the lights of l->finish; coverage 0: nothing is shown. */
+static shaded_pixels shade_row(const conic_light_work *l, size_t y, size_t begin, size_t end, int i_thread) {
+  const size_t width = (size_t)l->image->width, first = conic_light_pixel(l, 0, y);
+  float *coverage = l->rows + 4 * width * (size_t)i_thread, *colors = coverage + width;
+  const conic_shaded_row row = {.finish = &l->finish,
+                                .rays = &l->spread.rays,
+                                .albedo = (const float *)l->image->planes[CONIC_PLANE_ALBEDO] + 3 * first,
+                                .normal = (const float *)l->image->planes[CONIC_PLANE_NORMAL] + 3 * first,
+                                .coverage = coverage,
+                                .y = y};
+  for (size_t x = begin; x < end; x++)
+    coverage[x] = conic_light_coverage(l, first + x);
+  l->room.loops.shade(&row, begin, end, colors);
+  return (shaded_pixels){colors, coverage + begin};
+}
+
+static void hide_row(void *data, size_t y, int i_thread) {
   const conic_light_work *l = data;
-  float shaded[3];
-  for (size_t x = 0; x < (size_t)l->image->width; x++) {
-    size_t pixel = conic_light_pixel(l, x, y);
-    float part = 1.0f - l->spread.filled[pixel];
-    if (part > 0.0f && conic_light_shade(l, &l->finish, x, y, shaded))
-      for (int c = 0; c < 3; c++)
-        l->hidden[3 * pixel + (size_t)c] += part * shaded[c];
+  const float *filled = l->spread.filled + conic_light_pixel(l, 0, y);
+  size_t begin = 0, end = (size_t)l->image->width;
+  for (; end > 0 && !(1.0f - filled[end - 1] > 0.0f); end--)
+    ;
+  for (; begin < end && !(1.0f - filled[begin] > 0.0f); begin++)
+    ;
+  if (begin == end)
+    return;
+  const shaded_pixels s = shade_row(l, y, begin, end, i_thread);
+  float *hidden = l->hidden + 3 * conic_light_pixel(l, begin, y);
+  for (size_t i = 0; i < end - begin; i++) {
+    float part = 1.0f - filled[begin + i];
+    for (size_t c = 0; c < 3 && part > 0.0f && s.coverage[i] > 0.0f; c++)
+      hidden[3 * i + c] += part * s.colors[3 * i + c];
   }
 }
 
@@ -41,21 +68,33 @@ static void hide_lights(conic_light_work *l, const conic_finish_lights *lights) 
   conic_parallel_for(l->context, (size_t)l->image->height, hide_row, l);
 }
 
+static int is_any_hidden(const float hidden[3]) {
+  return (hidden[0] > 0.0f) | (hidden[1] > 0.0f) | (hidden[2] > 0.0f);
+}
+
 /* Takes the hidden part of what all lights make of a pixel. It multiplies by a part, and does not subtract a
  * difference: where normals cancel, the picture is darker than its planes tell (conic_shade). In one sample, a
  * direction's hidden light may be more than the whole; the mean of all is not. */
-static void take_row(void *data, size_t y) {
+static void take_row(void *data, size_t y, int i_thread) {
   const conic_light_work *l = data;
-  float shaded[3];
-  for (size_t x = 0; x < (size_t)l->image->width; x++) {
-    size_t pixel = conic_light_pixel(l, x, y);
-    const float *hidden = l->hidden + 3 * pixel;
-    float *rgba = (float *)l->image->planes[CONIC_PLANE_RGBA] + 4 * pixel;
-    if ((hidden[0] > 0.0f || hidden[1] > 0.0f || hidden[2] > 0.0f) && conic_light_shade(l, &l->finish, x, y, shaded))
-      for (int c = 0; c < 3; c++) {
-        int is_left = l->options->is_sample ? shaded[c] > 0.0f : hidden[c] < shaded[c];
-        rgba[c] *= is_left ? 1.0f - hidden[c] / shaded[c] : shaded[c] > 0.0f ? 0.0f : 1.0f;
-      }
+  const float *hidden = l->hidden + 3 * conic_light_pixel(l, 0, y);
+  float *rgba = (float *)l->image->planes[CONIC_PLANE_RGBA] + 4 * conic_light_pixel(l, 0, y);
+  size_t begin = 0, end = (size_t)l->image->width;
+  for (; end > 0 && !is_any_hidden(hidden + 3 * (end - 1)); end--)
+    ;
+  for (; begin < end && !is_any_hidden(hidden + 3 * begin); begin++)
+    ;
+  if (begin == end)
+    return;
+  const shaded_pixels s = shade_row(l, y, begin, end, i_thread);
+  for (size_t x = begin; x < end; x++) {
+    const float *shaded = s.colors + 3 * (x - begin), *dark = hidden + 3 * x;
+    if (!is_any_hidden(dark) || !(s.coverage[x - begin] > 0.0f))
+      continue;
+    for (int c = 0; c < 3; c++) {
+      int is_left = l->options->is_sample ? shaded[c] > 0.0f : dark[c] < shaded[c];
+      rgba[4 * x + (size_t)c] *= is_left ? 1.0f - dark[c] / shaded[c] : shaded[c] > 0.0f ? 0.0f : 1.0f;
+    }
   }
 }
 
@@ -247,8 +286,10 @@ static conic_status prepare_lighting(conic_light_work *l, const conic_casters *c
     memset(image->planes[CONIC_PLANE_SHADOW], 0, conic_image_pixels(image) * sizeof(float));
   int has_colors = image->planes[CONIC_PLANE_RGBA] && l->render->shading != CONIC_SHADE_NONE;
   if (has_colors)
-    l->hidden = conic_memory_allocate_zeroed(l->context, conic_image_pixels(image), 3 * sizeof *l->hidden);
-  if (!l->visible || (has_colors && !l->hidden))
+    status = conic_memory_allocate_these(
+        l->context, CONIC_ZEROED(l->hidden, 3 * conic_image_pixels(image)),
+        CONIC_ROOM(l->rows, 4 * (size_t)image->width * (size_t)conic_context_threads(l->context)));
+  if (!l->visible || status != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   return conic_edge_spread_init(l->context, l->camera, image, &l->receivers, casters->epsilon, l->options->samples,
                                 &l->spread);
@@ -282,7 +323,7 @@ conic_status conic_image_light_shared(conic_context *context, const conic_caster
     conic_parallel_for(context, (size_t)image->height, mirror_row, &l);
   if (status == CONIC_OK)
     divide_shadow(&l);
-  conic_memory_release_these(context, l.lamp_power, l.hidden, l.sums_block);
+  conic_memory_release_these(context, l.lamp_power, l.rows, l.hidden, l.sums_block);
   conic_edge_spread_release(&l.spread);
   conic_memory_release(context, l.visible);
   conic_receivers_release(context, &l.receivers);

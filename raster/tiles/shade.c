@@ -1,36 +1,6 @@
-#include "raster/tiles/finish.h"
-
 #include <math.h>
 
-#include "core/splats/float_vectors.h"
-
-static float at_least_zero(float x) {
-  return x > 0.0f ? x : 0.0f;
-}
-
-/* x³² */
-static float gloss(float x) {
-  for (int i = 0; i < 5; i++)
-    x *= x;
-  return x;
-}
-
-/* What one light adds to the light that falls on a surface, and to what is reflected like a gloss. */
-static void add_light(const conic_finish_light *light, conic_shading shading, const float normal[3],
-                      const float mean_normal[3], const float viewer[3], float lit[3], float glossy[3]) {
-  const float *towards = light->is_head ? viewer : light->towards;
-  float facing = at_least_zero(conic_float_dot(mean_normal, towards)), along = conic_float_dot(normal, towards);
-  for (int i = 0; i < 3; i++)
-    lit[i] += light->diffuse[i] * facing;
-  if (shading != CONIC_SHADE_PHONG || !(along > 0.0f))
-    return;
-  float reflected[3], agreement = conic_float_dot(mean_normal, mean_normal);
-  for (int i = 0; i < 3; i++)
-    reflected[i] = 2.0f * along * normal[i] - towards[i];
-  float shine = gloss(at_least_zero(conic_float_dot(reflected, viewer)));
-  for (int i = 0; i < 3; i++)
-    glossy[i] += light->specular[i] * shine * agreement;
-}
+#include "raster/tiles/light_terms.h"
 
 /* Where normals disagree, their mean is short. The light is averaged by the mean itself, not by its direction: at a
  * silhouette, splats of the front and of the back blend, both seen almost edge-on and both flipped to the viewer; what
@@ -44,14 +14,11 @@ void conic_shade(const conic_finish *finish, const float albedo[3], const float 
     return;
   }
   const conic_finish_lights *lights = finish->lights;
-  float lit[3] = {lights->ambient[0], lights->ambient[1], lights->ambient[2]}, glossy[3] = {0.0f, 0.0f, 0.0f};
-  if (lights->has_sky) {
-    float upward = conic_float_dot(mean_normal, lights->up);
-    for (int i = 0; i < 3; i++)
-      lit[i] += lights->slope[i] * upward;
-  }
+  float lit[3], glossy[3] = {0.0f, 0.0f, 0.0f};
+  conic_light_from_around(lights, mean_normal, lit);
   for (int i = 0; i < lights->n_lights; i++)
-    add_light(&lights->lights[i], options->shading, normal, mean_normal, viewer, lit, glossy);
+    conic_light_add(&lights->lights[i], options->shading == CONIC_SHADE_PHONG, normal, mean_normal, viewer, lit,
+                    glossy);
   for (int i = 0; i < 3; i++)
     shaded[i] = albedo[i] * lit[i] + glossy[i];
 }
