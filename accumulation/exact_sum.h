@@ -28,8 +28,11 @@ static inline void conic_exact_add(conic_exact_sum *sum, double summand) {
     return;
   if (size > CONIC_EXACT_SUM_MOST)
     size = CONIC_EXACT_SUM_MOST;
-  uint64_t whole = (uint64_t)size;
-  conic_exact_sum fixed = {whole, (uint64_t)((size - (double)whole) * 0x1p64)};
+  /* Through signed integers, which need no branch for what is above 2⁶³: it would be half of all parts. */
+  int64_t whole = (int64_t)size;
+  double rest = (size - (double)whole) * 0x1p32;
+  int64_t high = (int64_t)rest, low = (int64_t)((rest - (double)high) * 0x1p32);
+  conic_exact_sum fixed = {(uint64_t)whole, (uint64_t)high << 32 | (uint64_t)low};
   conic_exact_merge(sum, summand < 0.0 ? conic_exact_negative(fixed) : fixed);
 }
 

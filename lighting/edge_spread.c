@@ -105,6 +105,13 @@ static void find_means(void *data, size_t y, int i_thread) {
   for (size_t shift = 0; shift <= 2 * reach; shift++)
     for (size_t x = 0; x < width; x++)
       takes_mean[x] |= columns[shift + x];
+  size_t begin = 0, end = width;
+  for (; end > 0 && !takes_mean[end - 1]; end--)
+    ;
+  for (; begin < end && !takes_mean[begin]; begin++)
+    ;
+  s->ends[y][0] = (uint32_t)begin;
+  s->ends[y][1] = (uint32_t)end;
   for (size_t x = 0; x < width; x++)
     takes_mean[x] = takes_mean[x] != 0 && kind[x] != RECEIVER;
 }
@@ -152,22 +159,49 @@ static float spread_at(const conic_edge_spread *s, size_t x, size_t y) {
 
 static void fill_row(void *data, size_t y) {
   const conic_edge_spread *s = data;
-  const size_t width = (size_t)s->image->width, first = pixel_at(s, 0, y);
+  const size_t first = pixel_at(s, s->ends[y][0], y), n = s->ends[y][1] - s->ends[y][0];
   const unsigned char *kind = s->kind + first, *takes_mean = s->takes_mean + first;
   const float *own = s->own + first, otherwise = s->otherwise;
   float *restrict filled = s->filled + first;
-  for (size_t x = 0; x < width; x++) {
-    float value = own[x];
-    filled[x] = kind[x] == RECEIVER ? value : otherwise;
+  for (size_t i = 0; i < n; i++) {
+    float value = own[i];
+    filled[i] = kind[i] == RECEIVER ? value : otherwise;
   }
-  for (const unsigned char *next = takes_mean; (next = memchr(next, 1, width - (size_t)(next - takes_mean))); next++)
-    filled[next - takes_mean] = spread_at(s, (size_t)(next - takes_mean), y);
+  for (const unsigned char *next = takes_mean; (next = memchr(next, 1, n - (size_t)(next - takes_mean))); next++)
+    filled[next - takes_mean] = spread_at(s, s->ends[y][0] + (size_t)(next - takes_mean), y);
+}
+
+static void fill_beside(void *data, size_t y) {
+  const conic_edge_spread *s = data;
+  float *filled = s->filled + pixel_at(s, 0, y);
+  for (size_t x = 0; x < s->ends[y][0]; x++)
+    filled[x] = s->otherwise;
+  for (size_t x = s->ends[y][1]; x < (size_t)s->image->width; x++)
+    filled[x] = s->otherwise;
+}
+
+typedef struct own_values {
+  const conic_edge_spread *s;
+  const float *of_receivers;
+} own_values;
+
+static void place_values(void *data, size_t i_item) {
+  const own_values *work = data;
+  const conic_receivers *receivers = work->s->receivers;
+  size_t begin = i_item * CONIC_RECEIVED_TOGETHER, end = begin + CONIC_RECEIVED_TOGETHER;
+  end = end < receivers->count ? end : receivers->count;
+  for (size_t i = begin; i < end; i++)
+    work->s->own[receivers->pixel[i]] = work->of_receivers[i];
 }
 
 void conic_edge_spread_fill(conic_edge_spread *s, const float *of_receivers, float otherwise) {
-  for (size_t i = 0; i < s->receivers->count; i++)
-    s->own[s->receivers->pixel[i]] = of_receivers[i];
+  const int is_as_before = s->otherwise == otherwise;
+  const size_t n_items = (s->receivers->count + CONIC_RECEIVED_TOGETHER - 1) / CONIC_RECEIVED_TOGETHER;
+  own_values work = {s, of_receivers};
   s->otherwise = otherwise;
+  conic_parallel_for(s->context, n_items, place_values, &work);
+  if (!is_as_before)
+    conic_parallel_for(s->context, (size_t)s->image->height, fill_beside, s);
   conic_parallel_for(s->context, (size_t)s->image->height, fill_row, s);
 }
 
@@ -181,14 +215,16 @@ conic_status conic_edge_spread_init(conic_context *context, const conic_camera *
                            .receivers = receivers,
                            .epsilon = (float)epsilon,
                            .samples = samples,
+                           .otherwise = NAN,
                            .edge_px = edge > 1.0 ? edge < MOST_EDGE_PX ? (size_t)edge : MOST_EDGE_PX : 1};
   conic_camera_rays_init(camera, &s->rays);
   s->own = conic_memory_allocate(context, n, sizeof *s->own);
   s->filled = conic_memory_allocate(context, n, sizeof *s->filled);
   s->kind = conic_memory_allocate(context, n, 2);
+  s->ends = conic_memory_allocate(context, (size_t)image->height, sizeof *s->ends);
   s->columns = conic_memory_allocate(context, (size_t)image->width + 2 * MOST_EDGE_PX,
                                      2 * (size_t)conic_context_threads(context) * sizeof *s->columns);
-  if (!s->own || !s->filled || !s->kind || !s->columns)
+  if (!s->own || !s->filled || !s->kind || !s->ends || !s->columns)
     return CONIC_ERROR_MEMORY;
   s->takes_mean = s->kind + n;
   name_receivers(s);
@@ -201,5 +237,5 @@ conic_status conic_edge_spread_init(conic_context *context, const conic_camera *
 void conic_edge_spread_release(conic_edge_spread *s) {
   if (!s->context)
     return;
-  conic_memory_release_these(s->context, s->columns, s->kind, s->filled, s->own);
+  conic_memory_release_these(s->context, s->columns, s->ends, s->kind, s->filled, s->own);
 }

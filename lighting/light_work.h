@@ -18,7 +18,8 @@ typedef struct conic_edge_spread {
   unsigned char *takes_mean; /* of each pixel: 1 where it gets what others about it received */
   float *own;                /* of each pixel that is a receiver: what it received */
   float *filled;             /* of each pixel: what it gets from that */
-  float otherwise;           /* for pixels that get nothing */
+  float otherwise;           /* for pixels that get nothing; NaN before the first filling */
+  uint32_t (*ends)[2];       /* of each row: before and from where on no pixel gets anything */
   float *columns;            /* room of each thread */
 } conic_edge_spread;
 

@@ -169,14 +169,35 @@ static void reflect_sky(conic_light_work *l, size_t c) {
   conic_edge_spread_fill(&l->spread, l->visible, is_sample && sums->takes_hidden ? 0.0f : 1.0f);
 }
 
-/* Hides the part of the lights' sky and ground that does not arrive. */
-static void hide_sky(conic_light_work *l) {
+/* Colours that the sky's light is spread for: from the first one to before the end. */
+typedef struct sky_hiding {
+  const conic_light_work *l;
+  size_t first, end;
+} sky_hiding;
+
+static void hide_sky_row(void *data, size_t y) {
+  const sky_hiding *work = data;
+  const conic_light_work *l = work->l;
   const float *albedo = l->image->planes[CONIC_PLANE_ALBEDO];
-  for (size_t c = 0; c < 3; c++) {
-    reflect_sky(l, c);
-    for (size_t i = 0; i < conic_image_pixels(l->image); i++)
+  for (size_t x = 0; x < (size_t)l->image->width; x++) {
+    size_t i = conic_light_pixel(l, x, y);
+    for (size_t c = work->first; c < work->end; c++)
       if (albedo[3 * i + c] > 0.0f)
         l->hidden[3 * i + c] += albedo[3 * i + c] / conic_light_coverage(l, i) * l->spread.filled[i];
+  }
+}
+
+static int is_grey(const float color[3]) {
+  return color[0] == color[1] && color[1] == color[2];
+}
+
+/* Hides the part of the lights' sky and ground that does not arrive. */
+static void hide_sky(conic_light_work *l) {
+  const size_t n = is_grey(l->lights.ambient) && is_grey(l->lights.slope) ? 3 : 1;
+  for (size_t c = 0; c < 3; c += n) {
+    sky_hiding work = {l, c, c + n};
+    reflect_sky(l, c);
+    conic_parallel_for(l->context, (size_t)l->image->height, hide_sky_row, &work);
   }
 }
 
@@ -216,11 +237,12 @@ static conic_status gather_sky(conic_light_work *l) {
     return status;
   if (has_colors && l->sums.takes_hidden)
     hide_sky(l);
+  if (!ao)
+    return CONIC_OK;
   for (size_t i = 0; i < n; i++)
     l->visible[i] = arriving_part(l, i);
   conic_edge_spread_fill(&l->spread, l->visible, 1.0f);
-  if (ao)
-    memcpy(ao, l->spread.filled, conic_image_pixels(l->image) * sizeof *ao);
+  memcpy(ao, l->spread.filled, conic_image_pixels(l->image) * sizeof *ao);
   return CONIC_OK;
 }
 
