@@ -38,11 +38,11 @@ static conic_status draw_map(void *cookie, const conic_camera *camera, double ne
   const conic_look look = {camera, &render, &view, NULL};
   if (drawer->sharing && !drawer->sharing->is_apart)
     return draw_map_together(drawer, &look, depth);
-  return conic_source_draw(work->source, work->renderer, camera, &render, &view, depth, NULL);
+  return conic_source_draw(work->surfaces, work->renderer, camera, &render, &view, depth, NULL);
 }
 
 static map_drawer drawer_of(const conic_shot_stage *stage) {
-  const conic_source_scale *scale = conic_source_measure(stage->work->source);
+  const conic_source_scale *scale = conic_source_measure(stage->work->surfaces);
   map_drawer drawer = {.stage = stage, .render = stage->work->shot->render};
   drawer.render.passes = CONIC_PASS_OF_HIDING;
   drawer.render.epsilon = scale->epsilon;
@@ -77,10 +77,10 @@ static void fill_options(const conic_shot_work *work, conic_lighting_options *op
 /* What was chosen last is a map's. */
 static conic_status choose_again(const conic_shot_work *work, const conic_look *look, const conic_image *image) {
   conic_image depth = {.width = image->width, .height = image->height};
-  if (!(conic_source_measure(work->source)->abilities & CONIC_SOURCE_STREAMS))
-    return conic_source_choose(work->source, look->camera, look->render, look->view);
+  if (!(conic_source_measure(work->surfaces)->abilities & CONIC_SOURCE_STREAMS))
+    return conic_source_choose(work->surfaces, look->camera, look->render, look->view);
   depth.planes[CONIC_PLANE_Z] = image->planes[CONIC_PLANE_Z];
-  return conic_source_draw(work->source, work->renderer, look->camera, look->render, look->view, &depth, NULL);
+  return conic_source_draw(work->surfaces, work->renderer, look->camera, look->render, look->view, &depth, NULL);
 }
 
 /* What light falls on is the first process's to say. */

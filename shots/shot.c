@@ -4,6 +4,7 @@
 #include "shots/stage.h"
 #include "shots/way.h"
 #include "source/source_kind.h"
+#include "source/surfaces_among.h"
 
 void conic_shot_init_sized(conic_shot *shot, size_t size) {
   conic_shot own;
@@ -22,11 +23,12 @@ static const conic_shot_stage *stages_chain(conic_shot_work *work, conic_shot_st
   const conic_shot_plan *plan = &work->plan;
   conic_shot_stage *leaf = &stages[CONIC_MOST_STAGES - 1], *first = leaf;
   *leaf = (conic_shot_stage){.draw = conic_stage_leaf, .leaf = leaf, .work = work};
-  int is_lit_below = plan->lit == CONIC_LIT_BY_VIEW;
+  int is_lit_below = plan->lit == CONIC_LIT_BY_VIEW || (plan->lit != CONIC_LIT_NOT && plan->is_composited);
   const struct {
     int is_there;
     conic_status (*draw)(const conic_shot_stage *, const conic_look *, conic_image *, conic_render_statistics *);
   } above[] = {{is_lit_below, conic_stage_lit},
+               {plan->is_composited, conic_stage_composited},
                {plan->is_gathered, conic_stage_gathered},
                {plan->lit != CONIC_LIT_NOT && !is_lit_below, conic_stage_lit},
                {plan->is_accumulated, conic_stage_accumulated}};
@@ -59,6 +61,7 @@ conic_status conic_shot_work_begin(conic_source *source, conic_renderer *rendere
   memset(work, 0, sizeof *work);
   work->context = source->context;
   work->source = source;
+  work->surfaces = conic_source_surfaces(source) ? conic_source_surfaces(source) : source;
   work->renderer = renderer;
   work->shot = shot;
   work->noise = -1.0;

@@ -3,6 +3,7 @@
 #include "shots/focus.h"
 #include "shots/shot_faults.h"
 #include "source/source_kind.h"
+#include "source/surfaces_among.h"
 
 enum { RGBA = 1u << CONIC_PLANE_RGBA, Z = 1u << CONIC_PLANE_Z, NORMAL = 1u << CONIC_PLANE_NORMAL };
 
@@ -24,7 +25,7 @@ unsigned conic_shot_needs(const conic_shot *shot, unsigned planes) {
  * once. */
 static int draws_itself(const conic_shot *shot, unsigned abilities, const conic_camera *camera) {
   int has_lens = shot->n_samples > 0 && shot->aperture.diameter > 0.0;
-  if (!(abilities & CONIC_SOURCE_COMPOSITES))
+  if (!(abilities & CONIC_SOURCE_COMPOSITES) || abilities & CONIC_SOURCE_MIXES)
     return 0;
   return camera->kind != CONIC_CAMERA_CUBE && (shot->gaussians.profile != CONIC_PROFILE_EXACT || !has_lens);
 }
@@ -33,21 +34,23 @@ int conic_shot_is_gathered(const conic_shot *shot, unsigned abilities, const con
   return (camera->kind || camera->lens) && !draws_itself(shot, abilities, camera);
 }
 
-/* Samples of gathered pictures, and sides that no one camera sees together, are lit view by view. */
-static conic_lit lit_how(const conic_shot *shot, int is_gathered) {
+/* Samples of gathered pictures, surfaces among Gaussians, and sides that no one camera sees together, are lit view by
+ * view. */
+static conic_lit lit_how(const conic_shot *shot, int is_gathered, int is_composited) {
   if (!conic_shot_is_lit(shot))
     return CONIC_LIT_NOT;
-  if (is_gathered && (shot->n_samples > 0 || shot->camera.kind == CONIC_CAMERA_CUBE))
+  if (is_gathered && (is_composited || shot->n_samples > 0 || shot->camera.kind == CONIC_CAMERA_CUBE))
     return CONIC_LIT_BY_VIEW;
   return shot->n_samples > 0 ? CONIC_LIT_BY_SAMPLE : CONIC_LIT_WHOLE;
 }
 
 /* What is wrong with it; null: nothing. */
-static const char *find_fault(const conic_shot *shot, unsigned abilities) {
+static const char *find_fault(const conic_source *source, const conic_shot *shot) {
+  const unsigned abilities = source->scale.abilities;
   const char *fault = conic_fault_of_shot(shot);
   if (fault)
     return fault;
-  if (conic_shot_is_lit(shot) && abilities & CONIC_SOURCE_COMPOSITES)
+  if (conic_shot_is_lit(shot) && abilities & CONIC_SOURCE_COMPOSITES && !conic_source_surfaces(source))
     return "light is hidden from surfaces, not from Gaussians that are composited";
   if (shot->planes & CONIC_GAUSSIAN_PLANES && !(abilities & CONIC_SOURCE_COMPOSITES))
     return "the planes T, medianZ, inverseZ, last and doubt are of Gaussians that are composited";
@@ -59,12 +62,13 @@ static const char *find_fault(const conic_shot *shot, unsigned abilities) {
 conic_status conic_shot_plan_make(const conic_source *source, const conic_renderer *renderer, const conic_shot *shot,
                                   conic_shot_plan *plan) {
   const unsigned abilities = source->scale.abilities;
-  const char *fault = find_fault(shot, abilities);
+  const char *fault = find_fault(source, shot);
   if (fault)
     return conic_fail(source->context, CONIC_ERROR_ARGUMENT, "%s: the shot cannot be drawn: %s", source->name, fault);
   plan->is_accumulated = shot->n_samples > 0;
   plan->is_gathered = conic_shot_is_gathered(shot, abilities, &shot->camera);
-  plan->lit = lit_how(shot, plan->is_gathered);
+  plan->is_composited = conic_source_surfaces(source) != NULL;
+  plan->lit = lit_how(shot, plan->is_gathered, plan->is_composited);
   plan->planes = conic_shot_needs(shot, shot->planes);
   plan->has_windows = conic_source_has_windows(source, renderer, shot->view.transparency != CONIC_TRANSPARENCY_NONE);
   return CONIC_OK;

@@ -1,6 +1,7 @@
 /* The stages that draw a shot, one after the other: accumulated, lit, gathered, leaf. Each does one thing to what its
  * next one draws, and leaves out what the plan does without. Views and samples that are lit have the lit stage below
- * the gathered one. No stage calls back. */
+ * the gathered one. Surfaces among Gaussians are composited above the lit stage, and below the gathered one. No stage
+ * calls back. */
 #pragma once
 
 #include "shots/executor.h"
@@ -36,6 +37,8 @@ typedef struct conic_sums_keeper {
 typedef struct conic_shot_work {
   conic_context *context;
   conic_source *source;
+  conic_source *surfaces; /* what the stages below the composited one draw: the source, unless it has surfaces among
+                             its Gaussians */
   conic_renderer *renderer;
   const conic_shot *shot;
   conic_shot_plan plan;
@@ -61,18 +64,20 @@ struct conic_shot_stage {
   conic_shot_work *work;
 };
 
-/* The draw functions of the four. */
+/* The draw functions of the five. */
 conic_status conic_stage_accumulated(const conic_shot_stage *stage, const conic_look *look, conic_image *image,
                                      conic_render_statistics *statistics);
 conic_status conic_stage_lit(const conic_shot_stage *stage, const conic_look *look, conic_image *image,
                              conic_render_statistics *statistics);
+conic_status conic_stage_composited(const conic_shot_stage *stage, const conic_look *look, conic_image *image,
+                                    conic_render_statistics *statistics);
 conic_status conic_stage_gathered(const conic_shot_stage *stage, const conic_look *look, conic_image *image,
                                   conic_render_statistics *statistics);
 conic_status conic_stage_leaf(const conic_shot_stage *stage, const conic_look *look, conic_image *image,
                               conic_render_statistics *statistics);
 
 /* The chain of a plan; `stages` has that much room. Returns the first one. */
-enum { CONIC_MOST_STAGES = 5 };
+enum { CONIC_MOST_STAGES = 6 };
 
 /* Whether this process has the picture at the end. */
 int conic_work_has_picture(const conic_shot_work *work);

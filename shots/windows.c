@@ -260,8 +260,8 @@ conic_status conic_windows_draw_together(const conic_shot_work *work, const coni
   conic_moment start = conic_moment_now();
   const conic_camera *camera = look->camera;
   w.planes = (conic_image_planes(image) ? conic_image_planes(image) : work->planes) & CONIC_WINDOWS_PLANES;
-  conic_status status =
-      conic_source_windows_begin(work->source, work->renderer, camera, look->render, look->view, w.planes, &w.windows);
+  conic_status status = conic_source_windows_begin(work->surfaces, work->renderer, camera, look->render, look->view,
+                                                   w.planes, &w.windows);
   w.windows.other_bytes = w.executor->index == 0
                               ? conic_planes_pixel_bytes(w.planes) * (uint64_t)camera->width * (uint64_t)camera->height
                               : 0;

@@ -1,27 +1,24 @@
 /* Gaussian scenes: they draw themselves, composited by alpha. */
 
+#include <math.h>
+
 #include "conic/opencl.h"
-#include "core/base/loan_find.h"
 #include "core/base/vectors.h"
 #include "core/image/image_common.h"
 #include "gaussians/draw/gaussian_parts.h"
 #include "gaussians/draw/gaussian_tile.h"
 #include "gaussians/scene/gaussian_set.h"
 #include "raster/frame/samples.h"
-#include "source/source_kind.h"
+#include "raster/frame/statistics.h"
+#include "source/gaussians_source.h"
+#include "source/surfaces_among.h"
 
-typedef struct gaussians_source {
-  conic_source base;
-  conic_gaussians gaussians;
-  int is_lent; /* the Gaussians are a caller's */
-  conic_gaussian_options options;
-  conic_gaussian_statistics drawn;
-} gaussians_source;
+typedef conic_gaussians_source gaussians_source;
 
 /* Fainter Gaussians say little about where the scene is. */
 static const float least_opacity = 0.1f;
 
-static int takes_gaussians(const char *path, const conic_source_options *options) {
+int conic_gaussians_source_takes(const char *path, const conic_source_options *options) {
   conic_context *context; /* a context of its own, without messages: it is only a question whether a file is a scene */
   conic_context_options quiet;
   conic_context_options_init(&quiet);
@@ -59,22 +56,10 @@ static conic_status outline_means(gaussians_source *g) {
   return CONIC_OK;
 }
 
-static conic_status open_gaussians(conic_source *source, const char *const *paths, size_t n_paths,
-                                   const conic_source_options *options) {
-  gaussians_source *g = (gaussians_source *)source;
-  conic_source_scale *scale = &source->scale;
-  (void)n_paths;
-  g->options = *options->gaussians;
-  const conic_gaussians *lent = conic_loan_find(source->context, paths[0], "gaussians");
-  conic_status status = lent ? conic_gaussians_check(source->context, lent, paths[0])
-                             : conic_gaussians_read(source->context, paths[0], NULL, &g->gaussians);
-  g->is_lent = lent && status == CONIC_OK;
-  if (g->is_lent)
-    g->gaussians = *lent;
-  if (status != CONIC_OK)
-    return status;
+conic_status conic_gaussians_source_measure(conic_gaussians_source *g) {
+  conic_source_scale *scale = &g->base.scale;
   if (conic_gaussians_bounds(&g->gaussians, scale->minimum, scale->maximum) == 0)
-    return conic_fail(source->context, CONIC_ERROR_INPUT, "%s: there is no Gaussian that could be drawn", paths[0]);
+    return conic_fail(g->base.context, CONIC_ERROR_INPUT, "%s: there is no Gaussian that could be drawn", g->base.name);
   scale->n_splats = g->gaussians.count;
   scale->has_colors = 1;
   conic_gaussians_find_up(&g->gaussians, scale->up);
@@ -82,22 +67,32 @@ static conic_status open_gaussians(conic_source *source, const char *const *path
   return outline_means(g);
 }
 
+static int is_composited(const conic_source *source) {
+  return (source->kind->abilities & CONIC_SOURCE_COMPOSITES) != 0;
+}
+
 const conic_gaussians *conic_source_gaussians(const conic_source *source) {
-  return source->kind == &conic_source_kind_gaussians ? &((const gaussians_source *)source)->gaussians : NULL;
+  return is_composited(source) ? &((const gaussians_source *)source)->gaussians : NULL;
+}
+
+conic_source *conic_source_surfaces(const conic_source *source) {
+  return is_composited(source) ? ((const gaussians_source *)source)->surfaces : NULL;
 }
 
 conic_status conic_source_composite_by(conic_source *source, const conic_gaussian_options *options) {
   gaussians_source *g = (gaussians_source *)source;
-  if (source->kind == &conic_source_kind_gaussians && !conic_options_take(&g->options, options))
+  if (is_composited(source) && !conic_options_take(&g->options, options))
     return conic_fail(source->context, CONIC_ERROR_ARGUMENT, "%s: the options of Gaussian scenes are none",
                       source->name);
   return CONIC_OK;
 }
 
-static void close_gaussians(conic_source *source) {
+void conic_gaussians_source_close(conic_source *source) {
   gaussians_source *g = (gaussians_source *)source;
   if (!g->is_lent)
     conic_gaussians_release(source->context, &g->gaussians);
+  conic_source_close(g->surfaces);
+  conic_memory_release(source->context, g->inputs);
 }
 
 /* A window of the picture with several samples a pixel. */
@@ -258,7 +253,7 @@ static conic_status begin_gaussian_windows(conic_source_windows *w) {
   g->options.isa = w->render.isa;
   g->options.device = w->renderer ? conic_opencl_gaussian_device(w->renderer) : NULL;
   for (int c = 0; c < 3; c++)
-    g->options.background[c] = w->render.has_background ? w->render.background[c] : 0.0f;
+    g->options.background[c] = w->render.has_background && !g->surfaces ? w->render.background[c] : 0.0f;
   conic_status status = conic_gaussian_picture_begin(context, &g->gaussians, &fine, &g->options,
                                                      w->planes >> CONIC_PLANE_NORMAL & 1, &picture);
   w->own = picture;
@@ -269,8 +264,9 @@ static void end_gaussian_windows(conic_source_windows *w) {
   conic_gaussian_picture_release(w->own);
 }
 
-static conic_status draw_gaussian_window(conic_source_windows *w, const conic_window *window, conic_image *image,
-                                         conic_render_statistics *statistics) {
+/* Surfaces of the fine picture's size are null where there are none. */
+static conic_status composite_window(conic_source_windows *w, const conic_window *window, const conic_image *surfaces,
+                                     conic_image *image, conic_render_statistics *statistics) {
   gaussians_source *g = (gaussians_source *)w->source;
   conic_context *context = w->source->context;
   const int n = w->samples;
@@ -280,9 +276,13 @@ static conic_status draw_gaussian_window(conic_source_windows *w, const conic_wi
   const uint64_t n_before = conic_gaussian_picture_statistics(w->own)->pairs;
   fine.planes.width = n * image->width;
   fine.planes.height = n * image->height;
+  fine.planes.surface_z = surfaces ? surfaces->planes[CONIC_PLANE_Z] : NULL;
   conic_status status = allocate_planes(context, image, &fine);
   if (status == CONIC_OK)
     status = conic_gaussian_picture_draw(w->own, &fine_window, &fine.planes);
+  if (status == CONIC_OK && surfaces)
+    conic_surfaces_join(context, surfaces, fine.is_opaque ? w->render.background : NULL, g->gaussians.is_linear,
+                        (uint32_t)g->gaussians.count, &fine.planes);
   if (status == CONIC_OK) {
     clear_other_planes(image);
     uint64_t n_covered = reduce_samples(&fine, image);
@@ -294,50 +294,107 @@ static conic_status draw_gaussian_window(conic_source_windows *w, const conic_wi
   return status;
 }
 
+static conic_status draw_gaussian_window(conic_source_windows *w, const conic_window *window, conic_image *image,
+                                         conic_render_statistics *statistics) {
+  return composite_window(w, window, NULL, image, statistics);
+}
+
 static void weigh_gaussian_windows(const conic_source_windows *w, const conic_window *list, size_t n, double *weights) {
   const conic_gaussians *set = &((const gaussians_source *)w->source)->gaussians;
   conic_source_windows_weigh_places(w, set->position, set->count, set->origin, list, n, weights);
 }
 
-static const conic_source_windowing gaussian_windowing = {.begin = begin_gaussian_windows,
+const conic_source_windowing conic_gaussians_windowing = {.begin = begin_gaussian_windows,
                                                           .end = end_gaussian_windows,
                                                           .draw = draw_gaussian_window,
                                                           .weigh = weigh_gaussian_windows};
 
-/* Draws the whole picture. */
-static conic_status draw_gaussians(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
-                                   const conic_render_options *render, const conic_source_view *view,
-                                   conic_image *image, conic_render_statistics *statistics) {
+/* --- whole pictures --- */
+
+static conic_status composite_whole(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
+                                    const conic_render_options *render, int samples, const conic_image *surfaces,
+                                    conic_image *image, conic_render_statistics *statistics) {
   conic_source_windows w = {.source = source,
                             .renderer = renderer,
                             .camera = *camera,
                             .render = *render,
                             .planes = conic_image_planes(image),
-                            .samples = view->samples};
+                            .samples = samples};
   const conic_window whole = {0, camera->width, 0, camera->height};
-  conic_render_statistics unused;
   conic_status status = begin_gaussian_windows(&w);
   if (status == CONIC_OK)
-    status = draw_gaussian_window(&w, &whole, image, statistics ? statistics : &unused);
+    status = composite_window(&w, &whole, surfaces, image, statistics);
   end_gaussian_windows(&w);
   return status;
 }
 
-static void tell_gaussians_rest(const conic_source *source, conic_facts *facts) {
+/* Where no surface is, it hides nothing. */
+static void move_empty_away(const conic_image *surfaces) {
+  const float *rgba = surfaces->planes[CONIC_PLANE_RGBA];
+  float *z = surfaces->planes[CONIC_PLANE_Z];
+  for (size_t i = 0; i < conic_image_pixels(surfaces); i++)
+    if (!(rgba[4 * i + 3] > 0.0f))
+      z[i] = INFINITY;
+}
+
+conic_status conic_source_draw_among(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
+                                     const conic_render_options *render, const conic_source_view *view,
+                                     const conic_surfaces_drawer *drawer, conic_image *image,
+                                     conic_render_statistics *statistics) {
+  const unsigned ids = 1u << CONIC_PLANE_ID | 1u << CONIC_PLANE_LAST, planes = conic_image_planes(image);
+  conic_camera fine = conic_samples_camera(camera, view->samples, 0, camera->height);
+  conic_render_options bare = *render;
+  conic_source_view single = *view;
+  conic_render_statistics of_surfaces;
+  conic_image surfaces;
+  bare.has_background = 0;
+  single.samples = 1;
+  memset(&of_surfaces, 0, sizeof of_surfaces);
+  conic_status status =
+      conic_image_allocate(source->context, fine.width, fine.height,
+                           1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | drawer->planes |
+                               (planes & 1u << CONIC_PLANE_NORMAL) | (planes & ids ? 1u << CONIC_PLANE_ID : 0),
+                           &surfaces);
+  if (status == CONIC_OK)
+    status = drawer->draw(drawer->cookie, &fine, &bare, &single, &surfaces, &of_surfaces);
+  if (status == CONIC_OK) {
+    move_empty_away(&surfaces);
+    status = composite_whole(source, renderer, camera, render, view->samples, &surfaces, image, statistics);
+  }
+  const uint64_t n_covered = statistics->pixels_covered;
+  if (status == CONIC_OK)
+    conic_statistics_add(&of_surfaces, statistics);
+  statistics->pixels_covered = n_covered;
+  conic_image_release(source->context, &surfaces);
+  return status;
+}
+
+typedef struct plain_drawing {
+  conic_source *surfaces;
+  conic_renderer *renderer;
+} plain_drawing;
+
+static conic_status draw_plain(void *cookie, const conic_camera *camera, const conic_render_options *render,
+                               const conic_source_view *view, conic_image *surfaces,
+                               conic_render_statistics *statistics) {
+  const plain_drawing *p = cookie;
+  return conic_source_draw(p->surfaces, p->renderer, camera, render, view, surfaces, statistics);
+}
+
+conic_status conic_gaussians_source_draw(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
+                                         const conic_render_options *render, const conic_source_view *view,
+                                         conic_image *image, conic_render_statistics *statistics) {
+  conic_render_statistics unused;
+  plain_drawing plain = {((const gaussians_source *)source)->surfaces, renderer};
+  const conic_surfaces_drawer drawer = {.draw = draw_plain, .cookie = &plain};
+  statistics = statistics ? statistics : &unused;
+  return plain.surfaces ? conic_source_draw_among(source, renderer, camera, render, view, &drawer, image, statistics)
+                        : composite_whole(source, renderer, camera, render, view->samples, NULL, image, statistics);
+}
+
+void conic_gaussians_source_tell(const conic_source *source, conic_facts *facts) {
   const gaussians_source *g = (const gaussians_source *)source;
   CONIC_ADD_FACTS(facts,
                   conic_fact_text(CONIC_FACT_TEXT, "profile", "%s", conic_gaussian_profile_name(g->options.profile)),
                   CONIC_COUNT("entries", g->drawn.entries));
 }
-
-const conic_source_kind conic_source_kind_gaussians = {
-    .size = sizeof(gaussians_source),
-    .abilities = CONIC_SOURCE_COMPOSITES,
-    .company = CONIC_SOURCE_ALONE,
-    .takes = takes_gaussians,
-    .open = open_gaussians,
-    .close = close_gaussians,
-    .draw = draw_gaussians,
-    .windowing = &gaussian_windowing,
-    .tell_rest = tell_gaussians_rest,
-};

@@ -6,9 +6,9 @@
 #include "source/reach.h"
 
 /* Every kind, in the order in which they are asked; the last takes all remaining inputs. */
-static const conic_source_kind *const kinds[] = {&conic_source_kind_gaussians, &conic_source_kind_layers,
-                                                 &conic_source_kind_hybrid,    &conic_source_kind_patches,
-                                                 &conic_source_kind_octree,    &conic_source_kind_drawing};
+static const conic_source_kind *const kinds[] = {
+    &conic_source_kind_gaussians, &conic_source_kind_scenes,  &conic_source_kind_together, &conic_source_kind_layers,
+    &conic_source_kind_hybrid,    &conic_source_kind_patches, &conic_source_kind_octree,   &conic_source_kind_drawing};
 enum { N_KINDS = sizeof kinds / sizeof kinds[0] };
 
 CONIC_DEFINE_OPTIONS(conic_source_options, .cutoff = 1.5f, .n_neighbours = 20)
@@ -17,20 +17,21 @@ CONIC_DEFINE_OPTIONS(conic_source_view, .only_kind = -1, .samples = 1, .color_er
 
 /* --- kinds --- */
 
-static int takes_any(const conic_source_kind *kind, const char *const *paths, size_t n,
-                     const conic_source_options *options) {
+static int takes_inputs(const conic_source_kind *kind, const char *const *paths, size_t n,
+                        const conic_source_options *options) {
+  const size_t wanted = kind->company == CONIC_SOURCE_ALIKE ? n : 1;
+  size_t n_taken = 0;
   if (kind->company == CONIC_SOURCE_SINGLE && n != 1)
     return 0;
-  for (size_t i = 0; i < n; i++)
-    if (kind->takes(paths[i], options))
-      return 1;
-  return 0;
+  for (size_t i = 0; i < n && n_taken < wanted; i++)
+    n_taken += (size_t)(kind->takes(paths[i], options) != 0);
+  return n_taken == wanted;
 }
 
 const conic_source_kind *conic_source_kind_find(const char *const *paths, size_t n,
                                                 const conic_source_options *options) {
   int i = 0;
-  while (i < N_KINDS - 1 && !takes_any(kinds[i], paths, n, options))
+  while (i < N_KINDS - 1 && !takes_inputs(kinds[i], paths, n, options))
     i++;
   return kinds[i];
 }
@@ -94,8 +95,7 @@ conic_status conic_source_open(conic_context *context, const char *const *paths,
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "source: no input, or the options were not initialised");
   const conic_source_kind *kind = conic_source_kind_find(paths, n_paths, &own);
   if (kind->company == CONIC_SOURCE_ALONE && n_paths != 1)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: a hybrid, and a Gaussian scene, is drawn by itself",
-                      paths[0]);
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: a hybrid is drawn by itself", paths[0]);
   if (conic_coloring_is_asked(&own) &&
       (kind == &conic_source_kind_octree ||
        (kind == &conic_source_kind_layers &&

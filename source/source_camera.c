@@ -2,6 +2,7 @@
 
 #include "raster/framing/drawing_frame.h"
 #include "source/source_samples.h"
+#include "source/surfaces_among.h"
 #include "source/upright.h"
 
 /* The outline of a hierarchy is known well enough with this error, in pixels of the framed picture. */
@@ -18,6 +19,21 @@ static conic_status choose_outline(conic_source *source, const conic_camera *cam
   return conic_source_choose(source, camera, &render, &view);
 }
 
+static conic_status find_outline(conic_source *source, const conic_camera *camera, float cutoff,
+                                 conic_drawing *outline);
+
+/* Adds the outline of surfaces among Gaussians: their splats to what is kept of these. */
+static conic_status add_surfaces(conic_source *source, const conic_camera *camera, float cutoff,
+                                 conic_drawing *outline) {
+  conic_drawing own;
+  conic_status status = find_outline(conic_source_surfaces(source), camera, cutoff, &own);
+  if (status == CONIC_OK && !source->has_surfaces_outline)
+    status = conic_splats_append(source->context, &source->outline, own.splats);
+  source->has_surfaces_outline = status == CONIC_OK;
+  outline->triangles = own.triangles;
+  return status;
+}
+
 /* Finds the outline of any source: one that streams is drawn once instead. */
 static conic_status find_outline(conic_source *source, const conic_camera *camera, float cutoff,
                                  conic_drawing *outline) {
@@ -31,6 +47,8 @@ static conic_status find_outline(conic_source *source, const conic_camera *camer
   if (source->outline.count == 0)
     status = conic_source_take_samples(source, &source->outline);
   *outline = (conic_drawing){&source->outline, &no_triangles};
+  if (status == CONIC_OK && conic_source_surfaces(source))
+    status = add_surfaces(source, camera, cutoff, outline);
   return status;
 }
 
@@ -64,7 +82,7 @@ conic_status conic_source_fit(conic_source *source, const conic_framing *framing
   if (status == CONIC_OK)
     status = find_outline(source, camera, cutoff, &outline);
   own.zoom = zoom;
-  if (source->kind->draw)
+  if (source->kind->draw && !conic_source_surfaces(source))
     cutoff = 0.0f; /* samples have no outlines: each is as wide as its pixel */
   return status == CONIC_OK ? conic_drawing_frame_shared(source->context, &source->shares, &outline, cutoff, &own,
                                                          n_turns, camera, near_z)

@@ -19,6 +19,7 @@ typedef enum conic_source_trait {
 typedef enum conic_source_company {
   CONIC_SOURCE_SINGLE, /* takes an input that is the only one; beside others, its splats are read */
   CONIC_SOURCE_ALONE,  /* refuses other inputs beside it */
+  CONIC_SOURCE_ALIKE,  /* takes inputs all of which it takes */
   CONIC_SOURCE_MANY
 } conic_source_company;
 
@@ -97,6 +98,7 @@ struct conic_source {
   double world_from_rest[3][4]; /* of a source that is moved as one piece */
   unsigned traits, no_traits;   /* bits of conic_source_trait: those that it has, and those that it surely lacks */
   conic_splats outline;         /* from conic_source_take_samples, if it was called */
+  int has_surfaces_outline;     /* and that of the surfaces among its Gaussians */
   double samples_until;         /* by the clock: after this nothing is read for the outline; 0: no limit */
   int only_samples;             /* of layered clouds, in the next picture: coarse places show some of their samples */
   double tolerance;             /* how far splats made of meshes are off these; 0: there are none */
@@ -105,7 +107,8 @@ struct conic_source {
 };
 
 extern const conic_source_kind conic_source_kind_drawing, conic_source_kind_octree, conic_source_kind_layers,
-    conic_source_kind_hybrid, conic_source_kind_patches, conic_source_kind_gaussians, conic_source_kind_shared;
+    conic_source_kind_hybrid, conic_source_kind_patches, conic_source_kind_gaussians, conic_source_kind_scenes,
+    conic_source_kind_together, conic_source_kind_shared;
 
 /* Adds the object "skipped" to a source's facts. */
 void conic_facts_add_repairs(conic_facts *facts, const conic_repairs *repairs);

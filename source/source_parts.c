@@ -1,12 +1,13 @@
 #include "source/source_parts.h"
 
 #include "source/source_kind.h"
+#include "source/surfaces_among.h"
 
 int conic_source_has_windows(const conic_source *source, const conic_renderer *renderer, int is_transparent) {
   const conic_source_windowing *windowing = source->kind->windowing;
   int is_carried = source->is_moved && !source->kind->move;
-  return windowing && (!is_transparent || windowing->has_transparency) && !is_carried &&
-         conic_renderer_has_parts(renderer);
+  return windowing && !conic_source_surfaces(source) && (!is_transparent || windowing->has_transparency) &&
+         !is_carried && conic_renderer_has_parts(renderer);
 }
 
 conic_status conic_source_windows_begin(conic_source *source, conic_renderer *renderer, const conic_camera *camera,

@@ -141,10 +141,21 @@ static uint64_t sum_of(const uint32_t *counts, size_t n) {
   return sum;
 }
 
+/* The surface's z at the tile's pixels, in their order; beside the picture there is none. */
+static void take_surface(const frame *f, const conic_gaussian_tile *tile, float surface_z[CONIC_GAUSSIAN_TILE_PIXELS]) {
+  const conic_gaussian_planes *p = f->planes;
+  for (size_t at = 0; at < CONIC_GAUSSIAN_TILE_PIXELS; at++) {
+    int x = tile->x + conic_gaussian_column(at) - f->window->begin[0],
+        y = tile->y + conic_gaussian_row(at) - f->window->begin[1];
+    surface_z[at] = x < p->width && y < p->height ? p->surface_z[(size_t)y * (size_t)p->width + (size_t)x] : 0.0f;
+  }
+}
+
 static void composite_tile(void *data, size_t i_tile, int i_thread) {
   frame *f = data;
   const conic_gaussian_target target = target_of(f);
   conic_gaussian_tile tile;
+  float surface_z[CONIC_GAUSSIAN_TILE_PIXELS];
   const size_t x = f->bins.first_x + i_tile % f->bins.n_tiles_x, y = f->bins.first_y + i_tile / f->bins.n_tiles_x;
   const conic_view_rays *rays = f->view.rays;
   conic_gaussian_tile_begin(&tile, (int)x * CONIC_GAUSSIAN_TILE, (int)y * CONIC_GAUSSIAN_TILE);
@@ -159,7 +170,10 @@ static void composite_tile(void *data, size_t i_tile, int i_thread) {
                               .wants_all = wants_all(f->planes),
                               .entries = f->bins.entries + f->bins.tile_begin[i_tile],
                               .n = f->bins.tile_begin[i_tile + 1] - f->bins.tile_begin[i_tile],
+                              .surface_z = f->planes->surface_z ? surface_z : NULL,
                               .room = f->rooms ? f->rooms[i_thread] : NULL};
+  if (list.surface_z)
+    take_surface(f, &tile, surface_z);
   f->loops.composite[f->shape](&list, &tile);
   tile.x -= f->window->begin[0]; /* where the planes begin */
   tile.y -= f->window->begin[1];

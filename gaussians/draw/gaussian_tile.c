@@ -20,12 +20,15 @@ static void composite_planes(const conic_gaussian_list *list, uint32_t i_footpri
     tile->normal[c][at] += w * list->normals[i_footprint][c];
 }
 
-/* Returns 0 where compositing has ended at the pixel. */
+/* Returns 0 where compositing has ended at the pixel. What is not before its surface is left out. */
 static int composite_one(const conic_gaussian_list *list, uint32_t i_footprint, float z, float alpha,
                          conic_gaussian_tile *tile, size_t at) {
   const CONIC_STORED conic_gaussian_footprint *f = &list->footprints[i_footprint];
   const conic_gaussian_rules *rules = list->rules;
   float before = tile->T[at], after = before * (1.0f - alpha), w = alpha * before;
+  const float *surface_z = conic_gaussian_list_surface(list, at);
+  if (surface_z && !(z < *surface_z))
+    return 1;
   if (after < rules->stop || (rules->is_beyond_stop && after == rules->stop))
     return 0;
   for (int c = 0; c < 3; c++)

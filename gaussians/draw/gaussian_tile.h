@@ -63,8 +63,19 @@ typedef struct conic_gaussian_list {
   const conic_gaussian_sight *sights;   /* by footprint; of CONIC_SHAPE_SIGHT */
   const conic_sight_rays *tile_rays;    /* of CONIC_SHAPE_SIGHT */
   int is_parallel;                      /* rays are */
+  const float *surface_z; /* by pixel of the tile: what is not before it is not composited; null: all is */
 #endif
 } conic_gaussian_list;
+
+/* The surfaces' z from a pixel of the tile on; null: there are none, as on devices. */
+static inline const float *conic_gaussian_list_surface(const conic_gaussian_list *list, size_t at) {
+#ifdef CONIC_ON_DEVICE
+  (void)list, (void)at;
+  return 0;
+#else
+  return list->surface_z ? list->surface_z + at : NULL;
+#endif
+}
 
 #ifndef CONIC_ON_DEVICE /* where no pointer is to a function */
 /* One slot a shape: composites the list in the tile, whose sums and T's begin. */

@@ -63,7 +63,7 @@ CONIC_INLINE void composite_vector(const scene *s, gaussian_batch *b, size_t n_l
                                    conic_gaussian_shape shape, int wants_all) {
   const conic_gaussian_list *list = s->list;
   const places at = places_at(pixel);
-  pixels p = take_pixels(s->tile, b->goes_on[pixel / CONIC_LANES], pixel, wants_all);
+  pixels p = take_pixels(s, b->goes_on[pixel / CONIC_LANES], pixel, wants_all);
   for (size_t i = 0; i < n_listed && lanes_any(p.goes_on); i++) {
     const gaussian_record *r = &b->records[b->listed[i]];
     const uint32_t footprint = b->footprints[b->listed[i]];

@@ -27,6 +27,7 @@ CONIC_INLINE scene scene_of(const conic_gaussian_list *list, conic_gaussian_tile
 
 typedef struct pixels {
   lanes_mask goes_on; /* compositing has not ended */
+  lanes surface_z;    /* where the list has it */
   lanes T, rgb[3];
   lanes sum, sum_of_z, inverse_z, median_z, heaviest, normal[3];
   index_lanes count, id, last;
@@ -39,8 +40,11 @@ typedef struct response {
   index_lanes index;
 } response;
 
-CONIC_INLINE pixels take_pixels(const conic_gaussian_tile *tile, unsigned going, size_t at, int wants_all) {
+CONIC_INLINE pixels take_pixels(const scene *s, unsigned going, size_t at, int wants_all) {
+  const conic_gaussian_tile *tile = s->tile;
+  const float *surface_z = conic_gaussian_list_surface(s->list, at);
   pixels p = {.goes_on = lanes_mask_of(going),
+              .surface_z = surface_z ? lanes_load(surface_z) : lanes_of(0.0f),
               .T = lanes_load(tile->T + at),
               .rgb = {lanes_load(tile->rgb[0] + at), lanes_load(tile->rgb[1] + at), lanes_load(tile->rgb[2] + at)},
               .count = lanes_load_indices(tile->count + at)};
@@ -95,7 +99,9 @@ CONIC_INLINE void composite_planes_in_lanes(const scene *s, const response *r, l
 }
 
 CONIC_INLINE void composite_lanes(const scene *s, const response *r, pixels *p, int wants_all) {
-  const lanes_mask covered = r->covered & p->goes_on;
+  lanes_mask covered = r->covered & p->goes_on;
+  if (conic_gaussian_list_surface(s->list, 0))
+    covered = covered & lanes_less(r->z, p->surface_z);
   lanes after = p->T * (1.0f - r->alpha), w = r->alpha * p->T;
   const lanes_mask ends = s->is_beyond_stop ? lanes_at_least(s->stop, after) : lanes_less(after, s->stop);
   const lanes_mask goes = covered & lanes_not(ends);

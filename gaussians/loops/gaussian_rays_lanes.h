@@ -262,7 +262,7 @@ CONIC_INLINE void composite_rays_in_vector(const scene *s, meetings *m, size_t p
                                            int wants_all) {
   const conic_gaussian_list *list = s->list;
   const int block = (int)(pixel / CONIC_GAUSSIAN_BLOCK_PIXELS);
-  pixels p = take_pixels(s->tile, ~0u, pixel, wants_all);
+  pixels p = take_pixels(s, ~0u, pixel, wants_all);
   uint32_t listed[BATCH + CONIC_LANES];
   m->n = m->n_waiting = 0;
   m->nearest = lanes_of(__builtin_inff());

@@ -64,13 +64,15 @@ typedef struct conic_gaussian_planes {
   float *transparency; /* T: what is left of the light from behind */
   float *z; /* Σ w·z / Σ w, where z is of the mean, of the hit or of the greatest response, by the profile; 0: no
                Gaussian */
-  float *median_z;  /* of the Gaussian at which T falls to ½; 0 where it stays above */
-  float *inverse_z; /* Σ w/z */
-  float *normal;    /* 3: Σ w·n in the world, n the shortest axis, towards the eye */
-  uint32_t *count;  /* Gaussians composited */
-  uint32_t *id;     /* the Gaussian with the largest w, the first of equal ones; CONIC_NO_ID: none */
-  uint32_t *last;   /* the last one composited */
-  uint64_t reserved[8];
+  float *median_z;        /* of the Gaussian at which T falls to ½; 0 where it stays above */
+  float *inverse_z;       /* Σ w/z */
+  float *normal;          /* 3: Σ w·n in the world, n the shortest axis, towards the eye */
+  uint32_t *count;        /* Gaussians composited */
+  uint32_t *id;           /* the Gaussian with the largest w, the first of equal ones; CONIC_NO_ID: none */
+  uint32_t *last;         /* the last one composited */
+  const float *surface_z; /* given: Gaussians whose z there is not below it are left out, as a surface hides them; null:
+                             none is */
+  uint64_t reserved[7];
 } conic_gaussian_planes;
 
 typedef struct conic_gaussian_statistics {

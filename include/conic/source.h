@@ -26,14 +26,15 @@ typedef enum conic_representation {
 
 /* What a source can do besides being drawn, as bits. */
 typedef enum conic_source_ability {
-  CONIC_SOURCE_CHOOSES = 1,     /* draws less than everything: by an error, or within a budget */
-  CONIC_SOURCE_CLUSTERS = 2,    /* draws clusters of two kinds: only_kind, and the image's cluster plane */
-  CONIC_SOURCE_STREAMS = 4,     /* draws by itself, and reads meanwhile: levels, deadline, occlusion; hands nothing over
-                                   unless it is opened whole */
-  CONIC_SOURCE_COMPOSITES = 8,  /* draws Gaussians, composited by alpha: display values, and planes of its own. Of the
-                                   render options, the background and the instruction set count; nothing is handed
-                                   over */
-  CONIC_SOURCE_READS_PARTS = 16 /* reads those parts of a file or a URL that it draws, by the options' access */
+  CONIC_SOURCE_CHOOSES = 1,    /* draws less than everything: by an error, or within a budget */
+  CONIC_SOURCE_CLUSTERS = 2,   /* draws clusters of two kinds: only_kind, and the image's cluster plane */
+  CONIC_SOURCE_STREAMS = 4,    /* draws by itself, and reads meanwhile: levels, deadline, occlusion; hands nothing over
+                                  unless it is opened whole */
+  CONIC_SOURCE_COMPOSITES = 8, /* draws Gaussians, composited by alpha: display values, and planes of its own. Of the
+                                  render options, the background and the instruction set count; nothing is handed
+                                  over */
+  CONIC_SOURCE_READS_PARTS = 16, /* reads those parts of a file or a URL that it draws, by the options' access */
+  CONIC_SOURCE_MIXES = 32        /* composites, with surfaces among its Gaussians */
 } conic_source_ability;
 
 typedef struct conic_source_options {
@@ -72,7 +73,8 @@ CONIC_API void conic_source_options_init_sized(conic_source_options *options, si
 CONIC_API unsigned conic_source_abilities(const char *const *paths, size_t n_paths,
                                           const conic_source_options *options);
 
-/* Opens `n_paths` files, of any kinds, as one source, and measures it. A hybrid stands alone. Logs the repairs of
+/* Opens `n_paths` files, of any kinds, as one source, and measures it. A hybrid stands alone among surfaces. Gaussian
+ * scenes that are composited are one scene, with the surfaces of other files among its Gaussians. Logs the repairs of
  * points. On success the caller owns *source, which must not outlive the context. Null options are the defaults.
  * Errors: those of the functions that read each kind; ARGUMENT; INPUT where nothing could be drawn. */
 CONIC_API conic_status conic_source_open(conic_context *context, const char *const *paths, size_t n_paths,

@@ -1,0 +1,42 @@
+/* A Gaussian scene as a source, alone or among the surfaces of other inputs. */
+#pragma once
+
+#include "conic/gaussian_render.h"
+#include "source/source_kind.h"
+
+/* An input of several. */
+typedef struct conic_among_input {
+  int is_gaussian;
+  uint32_t first_id; /* of its Gaussians; of a surface its number among the surfaces' inputs */
+} conic_among_input;
+
+typedef struct conic_gaussians_source {
+  conic_source base;
+  conic_gaussians gaussians; /* of all inputs that are scenes, one after the other */
+  int is_lent;               /* the Gaussians are a caller's */
+  conic_gaussian_options options;
+  conic_gaussian_statistics drawn;
+  conic_source *surfaces; /* of the other inputs; null: there are none */
+  conic_among_input *inputs;
+  size_t n_inputs; /* 0: there is one */
+} conic_gaussians_source;
+
+/* Whether a file is a scene that is to be composited. */
+int conic_gaussians_source_takes(const char *path, const conic_source_options *options);
+
+/* Measures the Gaussians. Errors: INPUT (there is none to draw), MEMORY. */
+conic_status conic_gaussians_source_measure(conic_gaussians_source *source);
+
+void conic_gaussians_source_close(conic_source *source);
+conic_status conic_gaussians_source_draw(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
+                                         const conic_render_options *render, const conic_source_view *view,
+                                         conic_image *image, conic_render_statistics *statistics);
+void conic_gaussians_source_tell(const conic_source *source, conic_facts *facts);
+
+extern const conic_source_windowing conic_gaussians_windowing;
+
+/* Puts surfaces, which have a plane for each that `planes` has, behind the Gaussians that were composited before them
+ * over black: they get what is left of the light. `first_id` is that of the surfaces' ids 0; null `background`: none.
+ * Surfaces are linear, and are encoded for Gaussians that are not (docs/reference/together.md). */
+void conic_surfaces_join(conic_context *context, const conic_image *surfaces, const float background[3], int is_linear,
+                         uint32_t first_id, conic_gaussian_planes *planes);

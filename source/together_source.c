@@ -1,0 +1,190 @@
+/* Several inputs of which some are Gaussian scenes: these are one scene, and all others surfaces among it
+ * (docs/reference/together.md). */
+#include <string.h>
+
+#include "core/base/base.h"
+#include "core/base/loan_find.h"
+#include "core/splats/near.h"
+#include "gaussians/scene/gaussian_set.h"
+#include "source/gaussians_source.h"
+
+/* --- scenes --- */
+
+/* Sets of one number of scales, and of one meaning of colours. */
+static conic_status check_alike(conic_context *context, const conic_gaussians *first, const conic_gaussians *set,
+                                const char *path) {
+  int is_flat = !set->scale[2];
+  if (is_flat == !first->scale[2] && set->is_linear == first->is_linear)
+    return CONIC_OK;
+  return conic_fail(context, CONIC_ERROR_INPUT,
+                    "%s: 2D and 3D Gaussians, and scenes of linear and of display colours, are not drawn together",
+                    path);
+}
+
+/* One scene after the other, measured from the first one's origin: as their files would be, put together. */
+static conic_status join_scenes(conic_context *context, const conic_gaussians *sets, size_t n, conic_gaussians *all) {
+  size_t count = 0, first = 0;
+  int degree = 0;
+  for (size_t i = 0; i < n; i++) {
+    count += sets[i].count;
+    degree = sets[i].sh_degree > degree ? sets[i].sh_degree : degree;
+  }
+  if (count > CONIC_MOST_GAUSSIANS)
+    return conic_fail(context, CONIC_ERROR_INPUT, "the scenes have more than %d Gaussians together",
+                      CONIC_MOST_GAUSSIANS);
+  conic_status status =
+      conic_gaussians_allocate(context, count, degree, conic_gaussians_fields(&sets[0]) & CONIC_GAUSSIANS_2D, all);
+  if (status != CONIC_OK)
+    return status;
+  memcpy(all->origin, sets[0].origin, sizeof all->origin);
+  memcpy(all->frame, sets[0].frame, sizeof all->frame);
+  memcpy(all->up, sets[0].up, sizeof all->up);
+  all->is_linear = sets[0].is_linear;
+  for (size_t i = 0; i < n; first += sets[i++].count) {
+    conic_gaussians_put(&sets[i], all, first);
+    for (int axis = 0; axis < 3 && memcmp(sets[i].origin, all->origin, sizeof all->origin); axis++)
+      for (size_t k = 0; k < sets[i].count; k++)
+        all->position[axis][first + k] = (float)(conic_gaussians_mean(&sets[i], axis, k) - all->origin[axis]);
+  }
+  return CONIC_OK;
+}
+
+/* Reads a scene, or takes one that is lent under the name. */
+static conic_status read_scene(conic_context *context, const char *path, conic_gaussians *gaussians, int *is_lent) {
+  const conic_gaussians *lent = conic_loan_find(context, path, "gaussians");
+  *is_lent = lent != NULL;
+  if (!lent)
+    return conic_gaussians_read(context, path, NULL, gaussians);
+  conic_status status = conic_gaussians_check(context, lent, path);
+  if (status == CONIC_OK)
+    *gaussians = *lent;
+  return status;
+}
+
+/* Reads the inputs that are scenes. */
+static conic_status read_scenes(conic_gaussians_source *g, const char *const *paths) {
+  conic_context *context = g->base.context;
+  conic_gaussians *sets = conic_memory_allocate_zeroed(context, g->n_inputs, sizeof *sets);
+  int *are_lent = conic_memory_allocate_zeroed(context, g->n_inputs, sizeof *are_lent);
+  conic_status status = sets && are_lent ? CONIC_OK : CONIC_ERROR_MEMORY;
+  size_t n = 0, count = 0;
+  for (size_t i = 0; i < g->n_inputs && status == CONIC_OK; i++) {
+    if (!g->inputs[i].is_gaussian)
+      continue;
+    g->inputs[i].first_id = (uint32_t)count;
+    status = read_scene(context, paths[i], &sets[n], &are_lent[n]);
+    if (status == CONIC_OK)
+      status = check_alike(context, &sets[0], &sets[n], paths[i]);
+    count += sets[n++].count;
+  }
+  if (status == CONIC_OK)
+    status = join_scenes(context, sets, n, &g->gaussians);
+  for (size_t i = 0; i < n; i++)
+    if (!are_lent[i])
+      conic_gaussians_release(context, &sets[i]);
+  conic_memory_release_these(context, sets, are_lent);
+  return status;
+}
+
+/* --- surfaces --- */
+
+/* Opens the other inputs as one source. */
+static conic_status open_surfaces(conic_gaussians_source *g, const char *const *paths,
+                                  const conic_source_options *options) {
+  conic_context *context = g->base.context;
+  const char **others = conic_memory_allocate_zeroed(context, g->n_inputs, sizeof *others);
+  conic_source_options own = *options;
+  conic_status status = others ? CONIC_OK : CONIC_ERROR_MEMORY;
+  size_t n = 0;
+  own.gaussians = NULL;
+  for (size_t i = 0; others && i < g->n_inputs; i++)
+    if (!g->inputs[i].is_gaussian) {
+      g->inputs[i].first_id = (uint32_t)n;
+      others[n++] = paths[i];
+    }
+  if (n > 0)
+    status = conic_source_open(context, others, n, &own, &g->surfaces);
+  conic_memory_release(context, others);
+  return status;
+}
+
+/* The scale of both: the first input says which way is up. */
+static void join_scales(conic_gaussians_source *g) {
+  conic_source_scale *scale = &g->base.scale;
+  const conic_source_scale *other = conic_source_measure(g->surfaces);
+  for (int axis = 0; axis < 3; axis++) {
+    scale->minimum[axis] = fmin(scale->minimum[axis], other->minimum[axis]);
+    scale->maximum[axis] = fmax(scale->maximum[axis], other->maximum[axis]);
+  }
+  if (!g->inputs[0].is_gaussian) {
+    memcpy(scale->up, other->up, sizeof scale->up);
+    scale->up_basis = other->up_basis;
+  }
+  scale->near_z = conic_near_of_box(scale->minimum, scale->maximum);
+  scale->splat_length = other->splat_length;
+  scale->epsilon = other->epsilon;
+  scale->spacing = other->spacing;
+  scale->n_splats += other->n_splats;
+  scale->n_triangles = other->n_triangles;
+  scale->follows_cutoff = other->follows_cutoff;
+  scale->estimate_seconds = other->estimate_seconds;
+  g->base.traits = g->surfaces->traits;
+  g->base.no_traits = g->surfaces->no_traits;
+  g->base.coloring = g->surfaces->coloring;
+}
+
+static conic_status open_together(conic_source *source, const char *const *paths, size_t n_paths,
+                                  const conic_source_options *options) {
+  conic_gaussians_source *g = (conic_gaussians_source *)source;
+  g->options = *options->gaussians;
+  g->n_inputs = n_paths;
+  g->inputs = conic_memory_allocate_zeroed(source->context, n_paths, sizeof *g->inputs);
+  if (!g->inputs)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < n_paths; i++)
+    g->inputs[i].is_gaussian = conic_gaussians_source_takes(paths[i], options);
+  conic_status status = read_scenes(g, paths);
+  if (status == CONIC_OK)
+    status = conic_gaussians_source_measure(g);
+  if (status == CONIC_OK)
+    status = open_surfaces(g, paths, options);
+  if (status == CONIC_OK && g->surfaces)
+    join_scales(g);
+  return status;
+}
+
+/* The last input whose Gaussians begin before the id has it; ids behind all Gaussians are the surfaces'. */
+static size_t find_input(const conic_source *source, uint32_t id) {
+  const conic_gaussians_source *g = (const conic_gaussians_source *)source;
+  const int is_gaussian = !g->surfaces || id < g->gaussians.count;
+  const size_t number = is_gaussian ? 0 : conic_source_input_of(g->surfaces, id - (uint32_t)g->gaussians.count);
+  size_t found = 0;
+  for (size_t i = 0; i < g->n_inputs; i++)
+    if (g->inputs[i].is_gaussian == is_gaussian && g->inputs[i].first_id <= (is_gaussian ? id : number))
+      found = i;
+  return found;
+}
+
+static conic_status open_scene(conic_source *source, const char *const *paths, size_t n_paths,
+                               const conic_source_options *options) {
+  conic_gaussians_source *g = (conic_gaussians_source *)source;
+  (void)n_paths;
+  g->options = *options->gaussians;
+  conic_status status = read_scene(source->context, paths[0], &g->gaussians, &g->is_lent);
+  return status == CONIC_OK ? conic_gaussians_source_measure(g) : status;
+}
+
+#define KIND_OF_GAUSSIANS(its_abilities, its_company, its_open, its_input_of)                                          \
+  {                                                                                                                    \
+    .size = sizeof(conic_gaussians_source), .abilities = (its_abilities), .company = (its_company),                    \
+    .takes = conic_gaussians_source_takes, .open = (its_open), .close = conic_gaussians_source_close,                  \
+    .draw = conic_gaussians_source_draw, .windowing = &conic_gaussians_windowing, .input_of = (its_input_of),          \
+    .tell_rest = conic_gaussians_source_tell                                                                           \
+  }
+
+const conic_source_kind conic_source_kind_gaussians =
+                            KIND_OF_GAUSSIANS(CONIC_SOURCE_COMPOSITES, CONIC_SOURCE_SINGLE, open_scene, NULL),
+                        conic_source_kind_scenes =
+                            KIND_OF_GAUSSIANS(CONIC_SOURCE_COMPOSITES, CONIC_SOURCE_ALIKE, open_together, find_input),
+                        conic_source_kind_together = KIND_OF_GAUSSIANS(CONIC_SOURCE_COMPOSITES | CONIC_SOURCE_MIXES,
+                                                                       CONIC_SOURCE_MANY, open_together, find_input);
