@@ -11,6 +11,7 @@ static const struct {
   const char *name, *words;
 } fact_words[CLI_N_FACTS] = {
     [CLI_FACT_COMPOSITED] = {"composited", "Gaussian scenes that are composited"},
+    [CLI_FACT_MIXED] = {"mixed", "Gaussian scenes with surfaces among them"},
     [CLI_FACT_GAUSSIANS] = {"gaussians", "Gaussian scenes (.splat, .spz, .sog, or a .ply with the columns scale_0, "
                                          "rot_0, opacity and f_dc_0)"},
     [CLI_FACT_SPLATS] = {"splats", "splats"},

@@ -4,6 +4,7 @@
 enum cli_fact {
   /* Of what is drawn. Some of these are known only once it is read; until then they may hold. */
   CLI_FACT_COMPOSITED, /* Gaussians */
+  CLI_FACT_MIXED,      /* these, with surfaces among them */
   CLI_FACT_GAUSSIANS,  /* the file is a Gaussian scene, however it is drawn */
   CLI_FACT_SPLATS,
   CLI_FACT_TRIANGLES,
@@ -57,7 +58,6 @@ enum cli_fact {
   CLI_FACT_EXACT,     /* Gaussians by --profile exact */
   CLI_FACT_PROJECTED, /* --projection, but for perspective; of these */
   CLI_FACT_CUBE,
-  CLI_FACT_CURVED, /* and fisheyes and panoramas with --prefilter */
   CLI_FACT_DEEP,
   CLI_FACT_MATTES,
   CLI_FACT_TRANSPARENT,

@@ -11,6 +11,7 @@
  * camera space, with z measured from `distance` on. */
 typedef struct conic_light_map {
   const float *z;
+  const float *through; /* of each texel: the part of the light that comes as far as z; null: all does */
   int width, height;
   float rotation[3][3], distance;
   float focal, angle, center_x, center_y; /* angle: 1/focal, the width of a texel at the distance 1 */

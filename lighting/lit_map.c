@@ -19,7 +19,7 @@ void conic_lighting_options_init_sized(conic_lighting_options *options, size_t s
 }
 
 static const char *find_fault(const conic_casters *c, const conic_lighting_options *o) {
-  if (!c->draw || c->epsilon_is_drawn > 1 || !conic_is_zero(c->reserved, sizeof c->reserved))
+  if (!c->draw || c->epsilon_is_drawn > 1 || c->lets_through > 1 || !conic_is_zero(c->reserved, sizeof c->reserved))
     return "the casters have nothing that draws them, or their reserved words are not zero";
   for (int axis = 0; axis < 3; axis++)
     if (!(c->minimum[axis] <= c->maximum[axis] && fabs(c->minimum[axis]) < 1e20 && fabs(c->maximum[axis]) < 1e20))
@@ -52,7 +52,8 @@ conic_status conic_map_room_init(conic_context *context, const char *who, const 
 conic_status conic_map_room_fill(conic_map_room *room, const conic_camera *camera, double near_z,
                                  conic_light_map *map) {
   conic_image depth;
-  size_t n = (size_t)camera->width * (size_t)camera->height;
+  const size_t n_texels = (size_t)camera->width * (size_t)camera->height,
+               n = room->casters->lets_through ? 2 * n_texels : n_texels;
   if (n > room->n_room) {
     conic_memory_release(room->context, room->z);
     room->z = conic_memory_allocate(room->context, n + n / 4, sizeof *room->z);
@@ -65,6 +66,10 @@ conic_status conic_map_room_fill(conic_map_room *room, const conic_camera *camer
   depth.width = camera->width;
   depth.height = camera->height;
   depth.planes[CONIC_PLANE_Z] = room->z;
+  if (room->casters->lets_through) {
+    depth.planes[CONIC_PLANE_TRANSPARENCY] = room->z + n_texels;
+    map->through = room->z + n_texels;
+  }
   map->z = room->z;
   map->epsilon = (float)room->casters->epsilon;
   map->flat_epsilon = room->casters->epsilon_is_drawn ? 0.0f : map->epsilon;
@@ -320,7 +325,7 @@ conic_status conic_sky_sums_add(conic_map_room *room, const conic_lighting_optio
   walk.adding = (sky_adding){.room = room, .map = &walk.map, .sums = sums};
   if (walk.n_items == 0)
     return CONIC_OK;
-  return room->sharing ? walk_together(&walk) : walk_alone(&walk);
+  return room->sharing && !room->casters->lets_through ? walk_together(&walk) : walk_alone(&walk);
 }
 
 /* By the context's team, if it has one; its processes draw different maps. */

@@ -11,35 +11,37 @@ typedef struct received {
   float bias;
 } received;
 
-/* Whether the light of one texel's ray reaches the plane of the receiver. The depths are compared where that ray meets
- * the plane. So slopes do not hide themselves, and need no tolerance that would let light through at contacts. */
-static inline float ray_reaches_plane(const conic_light_map *map, const received *r, float column, float row) {
+/* How much of the light of one texel's ray reaches the plane of the receiver. The depths are compared where that ray
+ * meets the plane. So slopes do not hide themselves, and need no tolerance that would let light through at contacts. */
+static inline float ray_reaches_plane(const conic_light_map *map, const received *r, float column, float row,
+                                      int has_through) {
   float x = column > 0.0f ? column : 0.0f, y = row > 0.0f ? row : 0.0f;
   float last_x = (float)(map->width - 1), last_y = (float)(map->height - 1);
   x = x < last_x ? x : last_x;
   y = y < last_y ? y : last_y;
-  float z = map->z[(int)y * map->width + (int)x];
+  int i_texel = (int)y * map->width + (int)x;
+  float z = map->z[i_texel], through = has_through ? map->through[i_texel] : 1.0f;
   float to_x = r->column - (x + 0.5f), to_y = r->row - (y + 0.5f);
   float ray_x = ((x + 0.5f) - map->center_x) * map->angle, ray_y = ((y + 0.5f) - map->center_y) * map->angle;
   float along = (r->n[0] * ray_x + r->n[1] * ray_y) + r->n[2];
   along = along < -CONIC_LIGHT_MAP_GRAZING ? along : -CONIC_LIGHT_MAP_GRAZING;
   float plane = r->height + r->texel * ((r->n[0] * to_x + r->n[1] * to_y) / along);
   int is_nearer = (z > 0.0f) & ((z - map->distance) + r->bias < plane);
-  return is_nearer ? 0.0f : 1.0f;
+  return is_nearer ? 0.0f : through;
 }
 
-static inline float nearest_texel(const conic_light_map *map, const received *r) {
-  return ray_reaches_plane(map, r, (float)(int)r->column, (float)(int)r->row);
+static inline float nearest_texel(const conic_light_map *map, const received *r, int has_through) {
+  return ray_reaches_plane(map, r, (float)(int)r->column, (float)(int)r->row, has_through);
 }
 
-static inline float four_texels(const conic_light_map *map, const received *r) {
+static inline float four_texels(const conic_light_map *map, const received *r, int has_through) {
   float x = r->column + 0.5f, y = r->row + 0.5f; /* at least 0.5, so that cutting off is rounding down */
   float left = (float)(int)x - 1.0f, top = (float)(int)y - 1.0f;
   float right_part = x - (left + 1.0f), bottom_part = y - (top + 1.0f);
-  float above = ray_reaches_plane(map, r, left, top) * (1.0f - right_part) +
-                ray_reaches_plane(map, r, left + 1.0f, top) * right_part;
-  float below = ray_reaches_plane(map, r, left, top + 1.0f) * (1.0f - right_part) +
-                ray_reaches_plane(map, r, left + 1.0f, top + 1.0f) * right_part;
+  float above = ray_reaches_plane(map, r, left, top, has_through) * (1.0f - right_part) +
+                ray_reaches_plane(map, r, left + 1.0f, top, has_through) * right_part;
+  float below = ray_reaches_plane(map, r, left, top + 1.0f, has_through) * (1.0f - right_part) +
+                ray_reaches_plane(map, r, left + 1.0f, top + 1.0f, has_through) * right_part;
   return above * (1.0f - bottom_part) + below * bottom_part;
 }
 
@@ -73,7 +75,7 @@ static inline float face_lamp(const conic_light_map *map, const float at[3], rec
 }
 
 static inline void receive_one(const conic_light_map *map, const conic_receivers *from, size_t i, int is_smooth,
-                               int is_lamp, float *visible, float *facing) {
+                               int is_lamp, int has_through, float *visible, float *facing) {
   float p[3] = {from->position[0][i], from->position[1][i], from->position[2][i]};
   float n[3] = {from->normal[0][i], from->normal[1][i], from->normal[2][i]};
   float at[3];
@@ -91,7 +93,7 @@ static inline void receive_one(const conic_light_map *map, const conic_receivers
   r.height = at[2];
   r.texel = z * map->angle;
   float cosine = is_lamp ? face_lamp(map, at, &r) : face_sun(map, &r);
-  float seen = is_smooth ? four_texels(map, &r) : nearest_texel(map, &r);
+  float seen = is_smooth ? four_texels(map, &r, has_through) : nearest_texel(map, &r, has_through);
   *visible = cosine > 0.0f ? seen : 0.0f;
   *facing = cosine > 0.0f ? cosine : 0.0f;
 }
@@ -100,13 +102,16 @@ static void receive(const conic_light_map *map, const conic_receivers *receivers
                     int is_smooth, float *restrict visible, float *restrict facing) {
   const conic_light_map m = *map;
   const conic_receivers from = *receivers;
-  if (m.is_lamp)
+  if (m.through)
     for (size_t i = begin; i < end; i++)
-      receive_one(&m, &from, i, 1, 1, &visible[i - begin], &facing[i - begin]);
+      receive_one(&m, &from, i, is_smooth || m.is_lamp, m.is_lamp, 1, &visible[i - begin], &facing[i - begin]);
+  else if (m.is_lamp)
+    for (size_t i = begin; i < end; i++)
+      receive_one(&m, &from, i, 1, 1, 0, &visible[i - begin], &facing[i - begin]);
   else if (is_smooth)
     for (size_t i = begin; i < end; i++)
-      receive_one(&m, &from, i, 1, 0, &visible[i - begin], &facing[i - begin]);
+      receive_one(&m, &from, i, 1, 0, 0, &visible[i - begin], &facing[i - begin]);
   else
     for (size_t i = begin; i < end; i++)
-      receive_one(&m, &from, i, 0, 0, &visible[i - begin], &facing[i - begin]);
+      receive_one(&m, &from, i, 0, 0, 0, &visible[i - begin], &facing[i - begin]);
 }

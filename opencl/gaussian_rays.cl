@@ -71,7 +71,7 @@ static void look_at_one(const conic_gaussian_list *list, uint footprint, int wan
 
 static void composite_block(const scene *s, const ray_lists *lists, size_t n, uint block, int wants_all) {
   const size_t at = block * CONIC_GAUSSIAN_BLOCK_PIXELS;
-  pixels p = take_pixels(s->tile, 0xffff, at, wants_all);
+  pixels p = take_pixels(s, 0xffff, at, wants_all);
   for (size_t i = 0; i < n && lanes_any(p.goes_on); i++) {
     const index_lanes which = vload16(i, lists->which);
     response to;

@@ -21,8 +21,20 @@ static conic_status draw_map_together(const map_drawer *drawer, const conic_look
   return drawer->stage->leaf->draw(drawer->stage->leaf, look, depth, &unused);
 }
 
+/* Light comes through Gaussians before the nearest surface, by their exact response along its rays. */
+static conic_status let_through(const conic_shot_work *work, const conic_camera *camera, conic_image *depth) {
+  conic_gaussian_options options;
+  conic_gaussian_planes planes = {.width = depth->width,
+                                  .height = depth->height,
+                                  .transparency = depth->planes[CONIC_PLANE_TRANSPARENCY],
+                                  .surface_z = depth->planes[CONIC_PLANE_Z]};
+  conic_gaussian_options_init(&options);
+  options.isa = work->shot->render.isa;
+  return conic_gaussians_render(work->context, conic_source_gaussians(work->source), camera, &options, &planes, NULL);
+}
+
 /* The nearest splat is what hides. */
-static conic_status draw_map(void *cookie, const conic_camera *camera, double near_z, conic_image *depth) {
+static conic_status draw_surfaces_map(void *cookie, const conic_camera *camera, double near_z, conic_image *depth) {
   map_drawer *drawer = cookie;
   const conic_shot_work *work = drawer->stage->work;
   conic_render_options render = drawer->render;
@@ -41,6 +53,14 @@ static conic_status draw_map(void *cookie, const conic_camera *camera, double ne
   return conic_source_draw(work->surfaces, work->renderer, camera, &render, &view, depth, NULL);
 }
 
+static conic_status draw_map(void *cookie, const conic_camera *camera, double near_z, conic_image *depth) {
+  const conic_shot_work *work = ((const map_drawer *)cookie)->stage->work;
+  conic_image surfaces = *depth;
+  surfaces.planes[CONIC_PLANE_TRANSPARENCY] = NULL;
+  conic_status status = draw_surfaces_map(cookie, camera, near_z, &surfaces);
+  return status == CONIC_OK && depth->planes[CONIC_PLANE_TRANSPARENCY] ? let_through(work, camera, depth) : status;
+}
+
 static map_drawer drawer_of(const conic_shot_stage *stage) {
   const conic_source_scale *scale = conic_source_measure(stage->work->surfaces);
   map_drawer drawer = {.stage = stage, .render = stage->work->shot->render};
@@ -56,6 +76,7 @@ static conic_casters casters_of(const conic_shot_work *work, map_drawer *drawer)
   conic_casters casters = {.draw = draw_map,
                            .cookie = drawer,
                            .epsilon = conic_splat_reach(work),
+                           .lets_through = (uint64_t)work->plan.is_composited,
                            .epsilon_is_drawn = work->shot->view.transparency == CONIC_TRANSPARENCY_NONE};
   conic_find_reach(work, casters.minimum, casters.maximum);
   return casters;

@@ -1,7 +1,6 @@
 /* Gaussian scenes: they draw themselves, composited by alpha. */
 
-#include <math.h>
-
+#include "source/gaussians_source.h"
 #include "conic/opencl.h"
 #include "core/base/vectors.h"
 #include "core/image/image_common.h"
@@ -10,7 +9,6 @@
 #include "gaussians/scene/gaussian_set.h"
 #include "raster/frame/samples.h"
 #include "raster/frame/statistics.h"
-#include "source/gaussians_source.h"
 #include "source/surfaces_among.h"
 
 typedef conic_gaussians_source gaussians_source;
@@ -328,15 +326,6 @@ static conic_status composite_whole(conic_source *source, conic_renderer *render
   return status;
 }
 
-/* Where no surface is, it hides nothing. */
-static void move_empty_away(const conic_image *surfaces) {
-  const float *rgba = surfaces->planes[CONIC_PLANE_RGBA];
-  float *z = surfaces->planes[CONIC_PLANE_Z];
-  for (size_t i = 0; i < conic_image_pixels(surfaces); i++)
-    if (!(rgba[4 * i + 3] > 0.0f))
-      z[i] = INFINITY;
-}
-
 conic_status conic_source_draw_among(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
                                      const conic_render_options *render, const conic_source_view *view,
                                      const conic_surfaces_drawer *drawer, conic_image *image,
@@ -357,10 +346,8 @@ conic_status conic_source_draw_among(conic_source *source, conic_renderer *rende
                            &surfaces);
   if (status == CONIC_OK)
     status = drawer->draw(drawer->cookie, &fine, &bare, &single, &surfaces, &of_surfaces);
-  if (status == CONIC_OK) {
-    move_empty_away(&surfaces);
+  if (status == CONIC_OK)
     status = composite_whole(source, renderer, camera, render, view->samples, &surfaces, image, statistics);
-  }
   const uint64_t n_covered = statistics->pixels_covered;
   if (status == CONIC_OK)
     conic_statistics_add(&of_surfaces, statistics);

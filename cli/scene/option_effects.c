@@ -24,11 +24,10 @@ static const struct {
     {F(PATCH) | F(HYBRID), 0, 0, "--method patch draws points, and no hybrids"},
     {F(PATCH), CLI_CHOSEN, 0, "--method patch draws samples of its own: not with --error or --budget"},
     {F(PATCH) | F(DEEP), 0, 0, "--method patch draws samples of its own: not with --deep"},
-    {F(PROJECTED) | F(COMPOSITED), 0, F(EXACT) | F(CUBE),
+    {F(PROJECTED) | F(COMPOSITED), 0, F(EXACT) | F(CUBE) | F(MIXED),
      "--projection is of pictures by conic render, and of Gaussian scenes by --profile exact"},
     {F(PROJECTED) | F(ASKING), 0, F(EXACT),
      "--projection is of pictures by conic render, and of Gaussian scenes by --profile exact"},
-    {F(CURVED) | F(COMPOSITED), 0, 0, "--prefilter is of perspective and orthographic pictures of Gaussian scenes"},
     {F(COMPOSITED), F(DEEP) | F(MATTES) | F(EXPOSED), 0,
      "--deep, mattes and --exposure auto are of splats; give --profile surface, too"},
     {F(LEVELS) | F(ASKING), CLI_CHOSEN, 0,
@@ -46,7 +45,7 @@ static const struct {
     {F(MAP), F(EXPOSED) | F(BACKDROP) | F(PATCH) | F(OPENCL), 0,
      "--camera top is without --exposure auto, a background of two colours, --method patch and --device opencl"},
     {F(MAP) | F(MASKED), 0, 0, "--ao, --shadow and lamps are not of --camera top"},
-    {F(MASKED) | F(COMPOSITED), 0, 0, "--ao, --shadow and lamps are of surfaces; give --profile surface, too"},
+    {F(MASKED) | F(COMPOSITED), 0, F(MIXED), "--ao, --shadow and lamps are of surfaces; give --profile surface, too"},
     {F(DEEP) | F(SAMPLED), 0, 0, "--deep lists the splats of pixels, not of --samples"},
     {F(DEEP), CLI_CHOSEN, F(HYBRID),
      "--deep lists the splats of the input, not those that --error and --budget choose"},
@@ -57,7 +56,9 @@ static const struct {
     {F(MATTES), 0, F(EXR), "cryptomatte goes into an .exr; give -o OUT.exr"},
     {F(PROGRESSIVE), F(TURNTABLE) | F(REPEATED), 0,
      "--progressive writes the pictures of one frame, not of a turntable or of --repeat"},
-    {F(TRANSPARENT) | F(COMPOSITED), 0, 0,
+    {F(TRANSPARENT) | F(MIXED), 0, F(ACCUMULATED),
+     "surfaces among Gaussians let light through in the mean of samples; give --accumulate N, too"},
+    {F(TRANSPARENT) | F(COMPOSITED), 0, F(MIXED),
      "a Gaussian scene lets light through as it is; --transparency is of its splats, by --profile surface"},
     {F(TRANSPARENT) | F(HYBRID), 0, 0,
      "a hybrid keeps no opacities; --transparency is of what it was made of, as splats or as a mesh"},
@@ -92,15 +93,16 @@ static void guess_source(const cli_session *session, cli_render_job *job) {
   const cli_facts read =
       CLI_SURFACES | F(FACES) | F(TEXTURED) | F(EDGES) | F(RAW) | F(TEXT) | F(ALPHA) | F(VALUED) | F(FRACTIONS);
   int is_hybrid = (can & CONIC_SOURCE_CLUSTERS) != 0, is_mesh = job->opening.as == CONIC_AS_HYBRID;
-  own->certain = when(can & CONIC_SOURCE_COMPOSITES, F(COMPOSITED)) | when(is_hybrid, F(HYBRID)) |
-                 when(can & CONIC_SOURCE_STREAMS, F(LEVELS)) | when(can == CONIC_SOURCE_CHOOSES, F(NODES)) |
-                 when(!(can & CONIC_SOURCE_COMPOSITES), F(CHOOSES)) | when(is_gaussian(session, job), F(GAUSSIANS));
+  own->certain = when(can & CONIC_SOURCE_COMPOSITES, F(COMPOSITED)) | when(can & CONIC_SOURCE_MIXES, F(MIXED)) |
+                 when(is_hybrid, F(HYBRID)) | when(can & CONIC_SOURCE_STREAMS, F(LEVELS)) |
+                 when(can == CONIC_SOURCE_CHOOSES, F(NODES)) | when(!(can & CONIC_SOURCE_COMPOSITES), F(CHOOSES)) |
+                 when(is_gaussian(session, job), F(GAUSSIANS));
   if (own->certain & F(COMPOSITED))
     own->certain |= when(job->shot.gaussians.profile == CONIC_PROFILE_EXACT, F(EXACT));
   for (int i = 0; i < job->n_inputs; i++)
     own->certain |= when(strstr(job->inputs[i], "://") != NULL, F(URL));
   own->possible = own->certain;
-  if (own->certain & F(COMPOSITED))
+  if (own->certain & F(COMPOSITED) && !(own->certain & F(MIXED)))
     return;
   if (is_hybrid)
     own->possible |=
@@ -189,10 +191,7 @@ static cli_facts ask_of_camera(const cli_render_job *job) {
          when(job->stereo.distance > 0.0, F(STEREO)) | when(sums->n_samples > 0, F(ACCUMULATED)) |
          when(sums->is_sample_given, F(SAMPLE)) | when(sums->width.value > 0.0, F(LENS)) |
          when(job->is_turntable || job->camera_path || sums->motion_path, F(WAY)) |
-         when(kind != CONIC_CAMERA_PERSPECTIVE, F(PROJECTED)) | when(kind == CONIC_CAMERA_CUBE, F(CUBE)) |
-         when((kind == CONIC_CAMERA_FISHEYE || kind == CONIC_CAMERA_EQUIRECTANGULAR) &&
-                  job->shot.gaussians.prefilter > 0.0,
-              F(CURVED));
+         when(kind != CONIC_CAMERA_PERSPECTIVE, F(PROJECTED)) | when(kind == CONIC_CAMERA_CUBE, F(CUBE));
 }
 
 /* Whether a quality does. */
@@ -203,7 +202,9 @@ static int chooses_samples(const cli_render_job *job, const cli_scene_words *wor
 static cli_facts ask_of_drawing(const cli_render_job *job, const cli_scene_words *words) {
   const conic_render_options *render = &job->shot.render;
   const conic_gaussian_profile profile = job->shot.gaussians.profile;
-  const int method = (int)render->method, is_composited = (job->abilities & CONIC_SOURCE_COMPOSITES) != 0;
+  const int method = (int)render->method,
+            is_composited =
+                (job->abilities & (CONIC_SOURCE_COMPOSITES | CONIC_SOURCE_MIXES)) == CONIC_SOURCE_COMPOSITES;
   const unsigned planes = job->is_aov_given ? job->shot.planes : 0;
   int is_lit = render->shading != CONIC_SHADE_NONE && !is_composited;
   int is_rough = words->quality == CLI_QUALITY_DRAFT && !words->is_method_given && !is_composited;

@@ -1,5 +1,6 @@
 /* A picture of Gaussians: set up, put in order, binned, composited. */
 
+#include <math.h>
 #include <stdatomic.h>
 
 #include "core/base/base.h"
@@ -141,13 +142,14 @@ static uint64_t sum_of(const uint32_t *counts, size_t n) {
   return sum;
 }
 
-/* The surface's z at the tile's pixels, in their order; beside the picture there is none. */
+/* The surface's z at the tile's pixels, in their order; infinity where there is none. */
 static void take_surface(const frame *f, const conic_gaussian_tile *tile, float surface_z[CONIC_GAUSSIAN_TILE_PIXELS]) {
   const conic_gaussian_planes *p = f->planes;
   for (size_t at = 0; at < CONIC_GAUSSIAN_TILE_PIXELS; at++) {
     int x = tile->x + conic_gaussian_column(at) - f->window->begin[0],
         y = tile->y + conic_gaussian_row(at) - f->window->begin[1];
-    surface_z[at] = x < p->width && y < p->height ? p->surface_z[(size_t)y * (size_t)p->width + (size_t)x] : 0.0f;
+    float z = x < p->width && y < p->height ? p->surface_z[(size_t)y * (size_t)p->width + (size_t)x] : 0.0f;
+    surface_z[at] = z > 0.0f ? z : INFINITY;
   }
 }
 

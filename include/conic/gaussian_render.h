@@ -70,8 +70,8 @@ typedef struct conic_gaussian_planes {
   uint32_t *count;        /* Gaussians composited */
   uint32_t *id;           /* the Gaussian with the largest w, the first of equal ones; CONIC_NO_ID: none */
   uint32_t *last;         /* the last one composited */
-  const float *surface_z; /* given: Gaussians whose z there is not below it are left out, as a surface hides them; null:
-                             none is */
+  const float *surface_z; /* given: Gaussians whose z there is not below it are left out, as a surface hides them; 0
+                             there: none is; null: nowhere */
   uint64_t reserved[7];
 } conic_gaussian_planes;
 

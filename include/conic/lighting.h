@@ -20,7 +20,8 @@ typedef struct conic_casters {
                      cutoff times their length, for triangles 0 */
   uint64_t epsilon_is_drawn; /* 1: Z, drawn by CONIC_PASS_OF_HIDING, has each splat's own ε in it, and `epsilon` is what
                                 a slope adds; else 0 */
-  uint64_t reserved[3];
+  uint64_t lets_through; /* 1: the maps have the plane T, too, for what part of the light comes as far as Z; else 0 */
+  uint64_t reserved[2];
 } conic_casters;
 
 /* A drawer of maps by CONIC_PASS_OF_HIDING multiplies the splats' length by this in its options. So no ε is above four
