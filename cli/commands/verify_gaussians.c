@@ -3,6 +3,8 @@
 #include "cli/commands/gaussian_commands.h"
 #include "cli/commands/verify_reference.h"
 #include "cli/render/sample_options.h"
+#include "raster/frame/samples.h"
+#include "source/surfaces_among.h"
 
 typedef struct gaussian_report {
   const cli_render_job *scene;
@@ -107,6 +109,30 @@ static conic_status draw_composited(cli_session *session, cli_render_job *scene,
   return status;
 }
 
+/* The surfaces among them as conic draws them, a pixel each sample; none: an empty image. */
+static conic_status draw_surfaces(cli_session *session, cli_render_job *scene, const conic_camera *camera,
+                                  const conic_image *image, conic_image *surfaces) {
+  conic_source *source = conic_source_surfaces(scene->source);
+  const conic_camera fine = conic_samples_camera(camera, scene->shot.view.samples, 0, camera->height);
+  const unsigned ids = 1u << CONIC_PLANE_ID | 1u << CONIC_PLANE_LAST, planes = conic_image_planes(image);
+  conic_render_options render = scene->shot.render;
+  conic_source_view view = scene->shot.view;
+  memset(surfaces, 0, sizeof *surfaces);
+  if (!source)
+    return CONIC_OK;
+  conic_source_settle(scene->source, &render);
+  render.has_background = 0;
+  view.samples = 1;
+  conic_status status =
+      conic_image_allocate(session->context, fine.width, fine.height,
+                           1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | (planes & 1u << CONIC_PLANE_NORMAL) |
+                               (planes & ids ? 1u << CONIC_PLANE_ID : 0),
+                           surfaces);
+  return status == CONIC_OK
+             ? conic_source_draw(source, scene->renderer, &fine, &render, &view, surfaces, &scene->statistics)
+             : status;
+}
+
 static int tell_judgement(cli_session *session, const gaussian_report *r) {
   int exit_code = cli_json_write(session, write_verdict, r);
   if (exit_code != CLI_DONE)
@@ -120,6 +146,7 @@ int cli_verify_composited(cli_session *session, cli_render_job *scene, size_t n_
                           conic_image *image) {
   gaussian_report r = {.scene = scene};
   conic_camera camera;
+  conic_image drawn = {0};
   const conic_gaussian_options options = cli_gaussian_options(scene);
   conic_gaussian_judging_init(&r.judging);
   r.judging.n_pixels = n_pixels;
@@ -130,10 +157,16 @@ int cli_verify_composited(cli_session *session, cli_render_job *scene, size_t n_
     status = draw_composited(session, scene, &camera, image, &r.render_ms);
   if (status == CONIC_OK)
     status = cli_reference_check_size(image_path, image, &camera);
-  double start = cli_seconds();
   if (status == CONIC_OK)
-    status = conic_gaussian_judge(session->context, conic_source_gaussians(scene->source), &camera, &options,
-                                  &r.judging, image, NULL, &r.verdict);
+    status = draw_surfaces(session, scene, &camera, image, &drawn);
+  double start = cli_seconds();
+  if (status == CONIC_OK) {
+    const conic_gaussians *gaussians = conic_source_gaussians(scene->source);
+    const conic_gaussian_surfaces surfaces = {&drawn, gaussians->is_linear, (uint32_t)gaussians->count};
+    r.judging.surfaces = drawn.planes[CONIC_PLANE_RGBA] ? &surfaces : NULL;
+    status = conic_gaussian_judge(session->context, gaussians, &camera, &options, &r.judging, image, NULL, &r.verdict);
+  }
+  conic_image_release(session->context, &drawn);
   r.oracle_ms = 1e3 * (cli_seconds() - start);
   r.n_pixels = (size_t)image->width * (size_t)image->height;
   return status == CONIC_OK ? tell_judgement(session, &r) : cli_exit_of(status);

@@ -22,16 +22,17 @@ CONIC_API void conic_float_model_init_sized(conic_float_model *model, conic_floa
 
 /* Decisions that rounding may turn either way. */
 typedef enum conic_gaussian_doubt {
-  CONIC_DOUBT_LEAST = 0, /* α at its least */
-  CONIC_DOUBT_SIGN = 1,  /* of q, which floats may make negative */
-  CONIC_DOUBT_EDGE = 2,  /* of the tiles, of the box or of the cutoff */
-  CONIC_DOUBT_NEAR = 3,  /* at the near plane, or at the eye */
-  CONIC_DOUBT_ORDER = 4, /* of two whose keys floats may swap */
-  CONIC_DOUBT_END = 5,   /* T where compositing ends */
-  CONIC_DOUBT_MOST = 6   /* α at its greatest: either way gives the same */
+  CONIC_DOUBT_LEAST = 0,  /* α at its least */
+  CONIC_DOUBT_SIGN = 1,   /* of q, which floats may make negative */
+  CONIC_DOUBT_EDGE = 2,   /* of the tiles, of the box or of the cutoff */
+  CONIC_DOUBT_NEAR = 3,   /* at the near plane, or at the eye */
+  CONIC_DOUBT_ORDER = 4,  /* of two whose keys floats may swap */
+  CONIC_DOUBT_END = 5,    /* T where compositing ends */
+  CONIC_DOUBT_MOST = 6,   /* α at its greatest: either way gives the same */
+  CONIC_DOUBT_SURFACE = 7 /* before or behind the surface of its pixel */
 } conic_gaussian_doubt;
 
-#define CONIC_N_GAUSSIAN_DOUBTS 7
+#define CONIC_N_GAUSSIAN_DOUBTS 8
 
 /* "least", "sign" …; null for a number that is none. */
 CONIC_API const char *conic_gaussian_doubt_name(conic_gaussian_doubt doubt);
@@ -78,6 +79,14 @@ typedef conic_pixel_class conic_gaussian_class;
 /* "equal", "rounded" …; null for a number that is none. */
 CONIC_API const char *conic_gaussian_class_name(conic_gaussian_class number);
 
+/* What surfaces among Gaussians look like: opaque, and one sample a pixel of `image`, which has as many pixels as the
+ * judged picture has samples. It is taken as it is. */
+typedef struct conic_gaussian_surfaces {
+  const conic_image *image; /* rgba and Z; N and id where the judged picture has these */
+  int is_linear;            /* the Gaussians' colours are: else the surfaces' are encoded by sRGB's curve */
+  uint32_t first_id;        /* the id, in the judged picture, of the image's id 0 */
+} conic_gaussian_surfaces;
+
 typedef struct conic_gaussian_judging {
   size_t size;                    /* sizeof(conic_gaussian_judging), set by the init function */
   const conic_float_model *model; /* of what drew the picture; null: conic's own */
@@ -91,6 +100,7 @@ typedef struct conic_gaussian_judging {
   uint32_t *faults;               /* null; or takes which planes of each judged pixel are wrong, as bits 1 << plane, and
                                      of rgba which channels, as bits 1 << (CONIC_MAX_PLANES + channel). For
                                      conic_faults_locate */
+  const conic_gaussian_surfaces *surfaces; /* null: there are only Gaussians */
 } conic_gaussian_judging;
 
 /* All pixels, conic's own floats, one sample. */

@@ -246,8 +246,11 @@ static void bound_one_pixel(const oracle_bound_request *b, cell_worker *w, size_
   for (int row = 0; row < b->samples; row++)
     for (int column = 0; column < b->samples; column++) {
       conic_gaussian_bound sample;
+      oracle_surface surface;
+      int is_there = b->surfaces && conic_oracle_surface_at(b->surfaces, x + column, y + row, &surface);
       size_t n_meetings = gather_meetings(b, w, n, x + column + 0.5, y + row + 0.5);
-      conic_oracle_composite(&b->doubting, w->meetings, n_meetings, b->background, w->steps, &sample);
+      conic_oracle_composite(&b->doubting, w->meetings, n_meetings, b->background, is_there ? &surface : NULL, w->steps,
+                             &sample);
       if (b->note)
         b->note(b->data, pixel, w->meetings, n_meetings, i_thread);
       if (b->samples == 1)

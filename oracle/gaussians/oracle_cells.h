@@ -11,11 +11,12 @@ typedef void oracle_meeting_taker(void *data, size_t pixel, const oracle_meeting
 
 typedef struct oracle_bound_request {
   conic_context *context;
-  oracle_doubting doubting; /* whose camera is that of the samples */
-  const float *background;  /* 3 */
-  int samples;              /* N × N a pixel */
-  int width, height;        /* in pixels */
-  const uint32_t *pixels;   /* null: all */
+  oracle_doubting doubting;                /* whose camera is that of the samples */
+  const float *background;                 /* 3 */
+  const conic_gaussian_surfaces *surfaces; /* null: there are none */
+  int samples;                             /* N × N a pixel */
+  int width, height;                       /* in pixels */
+  const uint32_t *pixels;                  /* null: all */
   size_t n_pixels;
   oracle_bound_taker *take;
   oracle_meeting_taker *note; /* null: nobody asks */

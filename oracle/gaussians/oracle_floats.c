@@ -29,7 +29,7 @@ void conic_float_model_init_sized(conic_float_model *model, conic_float_kind kin
 CONIC_DEFINE_OPTIONS(conic_gaussian_judging, .samples = 1)
 
 CONIC_DEFINE_NAMES(conic_gaussian_doubt_name, conic_gaussian_doubt, CONIC_N_GAUSSIAN_DOUBTS, "least", "sign", "edge",
-                   "near", "order", "end", "most")
+                   "near", "order", "end", "most", "surface")
 
 const char *conic_gaussian_class_name(conic_gaussian_class number) {
   return conic_pixel_class_name(number);

@@ -42,6 +42,7 @@ typedef struct fork_job {
   size_t n;
   int most_forks;
   const float *background;
+  const oracle_surface *surface;
   oracle_step *steps;
   conic_gaussian_bound *bound;
 } fork_job;
@@ -119,13 +120,13 @@ static void admit_path(const fork_job *j, const fork_state *s) {
   for (size_t i = 0; i < s->n_steps; i++)
     if (j->steps[i].weight[1] >= heaviest && j->steps[i].weight[1] > 0.0)
       admit_id(b->id, &b->n_id, j->steps[i].meeting->g->index);
-  for (size_t i = s->n_steps; i-- > 0 && !is_sure;) {
+  for (size_t i = j->surface ? 0 : s->n_steps; i-- > 0 && !is_sure;) {
     admit_id(b->last, &b->n_last, j->steps[i].meeting->g->index);
     is_sure = j->steps[i].is_sure && !j->steps[i].may_be_before;
   }
   if (!(heaviest > 0.0))
     admit_id(b->id, &b->n_id, CONIC_NO_ID);
-  if (!is_sure && !(s->count[0] > 0.0))
+  if (!j->surface && !is_sure && !(s->count[0] > 0.0))
     admit_id(b->last, &b->n_last, CONIC_NO_ID);
 }
 
@@ -172,25 +173,78 @@ static range mean_depth(const fork_job *j, const fork_state *s, double slack) {
   return z;
 }
 
+/* --- a surface behind them --- */
+
+/* Joins the z of the Gaussians, whose mean is nearer than the surface's: z + T·(that − z) grows with z and with T. */
+static range join_depth(const oracle_surface *surface, range T, range z) {
+  const double off = 8.0 * ORACLE_FLOAT_UNIT * surface->z;
+  range joined = {z.v + T.v * (surface->z - z.v), z.low + T.low * (surface->z - z.low),
+                  z.high + T.high * (surface->z - z.high)};
+  if (!(T.v < 1.0))
+    joined.v = surface->z;
+  joined.high = oracle_max(joined.high, T.high < 1.0 ? 0.0 : surface->z);
+  return range_of(joined.low - off, joined.v, joined.high + off);
+}
+
+/* All that is left of the light is the surface's. Returns the light that comes from it, by channel. */
+static void join_surface(const fork_job *j, fork_state *s, range light[3], range *z, range *loose_z) {
+  const oracle_surface *surface = j->surface;
+  const range T = s->T;
+  for (int c = 0; c < 3; c++) {
+    const double color = surface->color[c], off = surface->color_off[c], n = surface->normal[c];
+    light[c] = multiply_ranges(T, range_of(color - off, color, color + off));
+    s->sums[SUM_NORMAL + c] = add_ranges(s->sums[SUM_NORMAL + c], multiply_ranges(T, range_of(n, n, n)));
+  }
+  *z = join_depth(surface, T, *z);
+  *loose_z = join_depth(surface, T, *loose_z);
+  const double inverse = 1.0 / surface->z;
+  s->sums[SUM_INVERSE_Z] =
+      add_ranges(s->sums[SUM_INVERSE_Z], multiply_ranges(T, round_range(range_of(inverse, inverse, inverse))));
+  if (T.low > 0.5)
+    s->median = range_of(surface->z, surface->z, surface->z);
+  else if (T.high > 0.5)
+    s->median = range_of(oracle_min(s->median.low, surface->z), T.v > 0.5 ? surface->z : s->median.v, surface->z);
+  s->count[0] += 1.0;
+  s->count[1] += 1.0;
+  s->count_v += 1.0;
+}
+
+/* The surface's where more than half of the light is its own. */
+static void admit_surface(const fork_job *j, const fork_state *s) {
+  conic_gaussian_bound *b = j->bound;
+  const double off = 2.0 * ORACLE_FLOAT_UNIT;
+  admit_id(b->last, &b->n_last, j->surface->id);
+  if (s->T.high > 0.5 - off)
+    admit_id(b->id, &b->n_id, j->surface->id);
+}
+
 static void end_path(const fork_job *j, const fork_state *at) {
   fork_state with = *at, *s = &with;
   s->T.low = oracle_min(s->T.low, s->ended.low);
   s->T.high = oracle_max(s->T.high, s->ended.high);
-  range z = mean_depth(j, s, 0.0), loose_z = mean_depth(j, s, s->slack[SUM_Z]);
+  range z = mean_depth(j, s, 0.0), loose_z = mean_depth(j, s, s->slack[SUM_Z]), all_light[3];
   for (int c = 0; c < 3; c++) {
     double behind = (double)j->background[c];
-    range light = multiply_ranges(s->T, range_of(behind, behind, behind));
+    all_light[c] = multiply_ranges(s->T, range_of(behind, behind, behind));
+  }
+  if (j->surface)
+    join_surface(j, s, all_light, &z, &loose_z);
+  for (int c = 0; c < 3; c++) {
+    const range light = all_light[c];
     admit_channel(j, s, CONIC_BOUND_RGB + c, add_ranges(s->sums[SUM_RGB + c], light), s->slack[SUM_RGB + c]);
     admit_channel(j, s, CONIC_BOUND_NORMAL + c, s->sums[SUM_NORMAL + c], s->slack[SUM_NORMAL + c]);
   }
-  admit_channel(j, s, CONIC_BOUND_T, s->T, 0.0);
+  admit_channel(j, s, CONIC_BOUND_T, j->surface ? range_of(0.0, 0.0, 0.0) : s->T, 0.0);
   double slack = oracle_max(loose_z.low < z.low ? z.low - loose_z.low : 0.0, /* which may be infinite */
                             loose_z.high > z.high ? loose_z.high - z.high : 0.0);
   admit_channel(j, s, CONIC_BOUND_Z, z, slack);
   admit_channel(j, s, CONIC_BOUND_MEDIAN_Z, s->median, 0.0);
   admit_channel(j, s, CONIC_BOUND_INVERSE_Z, s->sums[SUM_INVERSE_Z], s->slack[SUM_INVERSE_Z]);
   admit_channel(j, s, CONIC_BOUND_COUNT, range_of(s->count[0], s->count_v, s->count[1]), 0.0);
-  admit_path(j, s);
+  if (j->surface)
+    admit_surface(j, s);
+  if (!j->surface || !(s->T.low > 0.5 + 2.0 * ORACLE_FLOAT_UNIT))
+    admit_path(j, s);
 }
 
 /* The Gaussian with which T comes to ½, or before which it last was above. */
@@ -394,9 +448,25 @@ static int count_doubtful(const oracle_meeting *meetings, size_t n) {
   return n_doubtful;
 }
 
+/* Leaves out what is behind the surface for sure; what may be is in doubt. Returns how many are left. */
+static size_t leave_hidden(const oracle_surface *surface, oracle_meeting *meetings, size_t n) {
+  size_t left = 0;
+  for (size_t i = 0; i < n; i++) {
+    oracle_meeting *m = &meetings[i];
+    if (m->z[0] >= surface->z)
+      continue;
+    if (m->z[1] >= surface->z)
+      m->doubts |= 1u << CONIC_DOUBT_SURFACE;
+    m->covers = m->covers && (float)m->z_v < surface->z;
+    meetings[left++] = *m;
+  }
+  return left;
+}
+
 void conic_oracle_composite(const oracle_doubting *d, oracle_meeting *meetings, size_t n, const float background[3],
-                            oracle_step *steps, conic_gaussian_bound *bound) {
-  fork_job j = {.d = d, .meetings = meetings, .n = n, .background = background, .steps = steps, .bound = bound};
+                            const oracle_surface *surface, oracle_step *steps, conic_gaussian_bound *bound) {
+  n = surface ? leave_hidden(surface, meetings, n) : n;
+  fork_job j = {d, meetings, n, 0, background, surface, steps, bound};
   fork_state s = {.T = {1.0, 1.0, 1.0}, .ended = {0.0, INFINITY, -INFINITY}, .is_central = 1, .nearest_z = INFINITY};
   memset(bound, 0, sizeof *bound);
   for (int c = 0; c < CONIC_N_BOUNDS; c++) {

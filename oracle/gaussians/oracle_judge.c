@@ -235,6 +235,7 @@ static conic_status judge_all(oracle_entry *e, judge_job *j, conic_gaussian_verd
       return CONIC_ERROR_MEMORY;
     conic_oracle_choose_pixels(whole, b->n_pixels, pixels);
   }
+  b->surfaces = j->judging->surfaces;
   b->take = judge_bound;
   b->data = j;
   j->verdicts = conic_memory_allocate_zeroed(b->context, threads, sizeof *j->verdicts);
@@ -254,6 +255,16 @@ static conic_status judge_all(oracle_entry *e, judge_job *j, conic_gaussian_verd
   return status;
 }
 
+/* Whether there is a sample of the surfaces, with all that is judged, for each of the picture. */
+static int fits_samples(const conic_gaussian_judging *judging, const conic_image *image) {
+  const conic_image *surfaces = judging->surfaces->image;
+  const unsigned rgba = 1u << CONIC_PLANE_RGBA, z = 1u << CONIC_PLANE_Z, normal = 1u << CONIC_PLANE_NORMAL,
+                 id = 1u << CONIC_PLANE_ID, last = 1u << CONIC_PLANE_LAST, planes = conic_image_planes(image);
+  const unsigned wanted = rgba | z | (planes & normal) | (planes & (id | last) ? id : 0);
+  return surfaces->width == judging->samples * image->width && surfaces->height == judging->samples * image->height &&
+         !(wanted & ~conic_image_planes(surfaces));
+}
+
 /* The options as this version has them. Errors: ARGUMENT. */
 static conic_status take_judging(conic_context *context, const conic_gaussian_judging *judging,
                                  const conic_camera *camera, const conic_image *image, conic_gaussian_judging *own) {
@@ -264,6 +275,8 @@ static conic_status take_judging(conic_context *context, const conic_gaussian_ju
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "judge: the image is not of the camera's size");
   if (!conic_oracle_evidence_fits(image, own->greatest))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "judge: the greatest values lack a plane of the image");
+  if (own->surfaces && !fits_samples(own, image))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "judge: the surfaces are not those of the picture's samples");
   return CONIC_OK;
 }
 
@@ -299,6 +312,7 @@ conic_status conic_gaussian_find_doubts(conic_context *context, const conic_gaus
     status = conic_oracle_enter(context, gaussians, camera, options, own.model, own.samples, &e);
   if (status != CONIC_OK)
     return status;
+  e.bounding.surfaces = own.surfaces;
   e.bounding.take = take_doubts;
   e.bounding.data = image->planes[CONIC_PLANE_DOUBT];
   return conic_oracle_bound_all(&e.bounding);

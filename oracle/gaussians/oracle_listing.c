@@ -90,7 +90,7 @@ static conic_status bound_meetings(const oracle_bound_request *b, oracle_meeting
         from[n_those] = i;
         those[n_those++] = meetings[i];
       }
-    conic_oracle_composite(&b->doubting, those, n_those, b->background, steps, bound);
+    conic_oracle_composite(&b->doubting, those, n_those, b->background, NULL, steps, bound);
     for (size_t i = 0; i < n_those; i++)
       meetings[from[i]].noted = those[i].noted;
   }

@@ -4,6 +4,7 @@
 #include "conic/gaussian_judge.h"
 #include "oracle/gaussians/oracle_bounded.h"
 #include "oracle/gaussians/oracle_gaussian.h"
+#include "oracle/gaussians/oracle_surface.h"
 
 /* The profile's limits as the floats that everybody has of them. */
 typedef struct oracle_limits {
@@ -69,6 +70,7 @@ typedef struct oracle_step {
 } oracle_step;
 
 /* Composites the meetings that may cover the pixel, which stand in the order of the double run, and notes at each what
- * is in doubt. `steps` has room for as many. */
+ * is in doubt. A surface hides those behind it, and the background; null: there is none. `steps` has room for as many
+ * as there are meetings, which may be put together. */
 void conic_oracle_composite(const oracle_doubting *d, oracle_meeting *meetings, size_t n, const float background[3],
-                            oracle_step *steps, conic_gaussian_bound *bound);
+                            const oracle_surface *surface, oracle_step *steps, conic_gaussian_bound *bound);
