@@ -314,7 +314,8 @@ static const conic_shot_row reading_list[] = {
     {CONIC_ROW_TEXT, AT(where), NULL, "which points are wanted"},
     {CONIC_ROW_TRUTH, AT(keeps_alpha), NULL, "vertices keep their alpha"},
     {CONIC_ROW_LEFT_OUT, AT(cache), .meaning = "what is kept is what would be built"},
-    {CONIC_ROW_WORD, AT(colors_are), NULL, "what colours mean that are fractions of 1", colors_word}};
+    {CONIC_ROW_WORD, AT(colors_are), NULL, "what colours mean that are fractions of 1", colors_word},
+    {CONIC_ROW_TEXT, AT(place), NULL, "where inputs stand: each its number, a colon and its matrix"}};
 TABLE(reading, set_reading, NULL)
 #undef S
 

@@ -13,6 +13,7 @@
 #include "source/lean_drawing.h"
 #include "source/mesh_input.h"
 #include "source/moved_drawing.h"
+#include "source/places.h"
 #include "source/reach.h"
 #include "source/source_kind.h"
 
@@ -296,6 +297,30 @@ static conic_status move_drawing(conic_source *source, const conic_source_pose *
   return CONIC_OK;
 }
 
+/* Puts the inputs where they are to stand, for good. */
+static conic_status place_inputs(drawing_source *d, const char *text) {
+  conic_context *context = d->base.context;
+  const conic_drawing rest = {&d->splats, &d->triangles};
+  conic_place *places = text ? conic_memory_allocate(context, d->n_inputs, sizeof *places) : NULL;
+  if (!text || !places)
+    return text ? CONIC_ERROR_MEMORY : CONIC_OK;
+  conic_status status = conic_places_read(context, text, d->n_inputs, places);
+  if (status == CONIC_OK)
+    status = conic_moved_begin(context, &rest, &d->moved, &d->moved_triangles);
+  for (size_t i = 0; i < d->n_inputs && status == CONIC_OK; i++) {
+    const conic_drawing_range range = range_of_input(d, i);
+    conic_source_pose pose;
+    conic_source_pose_init(&pose);
+    memcpy(pose.world_from_rest, places[i].matrix, sizeof pose.world_from_rest);
+    conic_moved_put(context, &rest, &range, places[i].is_moved ? &pose : NULL, &d->moved, &d->moved_triangles);
+  }
+  if (status == CONIC_OK)
+    conic_moved_swap(&d->splats, &d->triangles, &d->moved, &d->moved_triangles);
+  conic_moved_end(context, &d->moved, &d->moved_triangles);
+  conic_memory_release(context, places);
+  return status;
+}
+
 static conic_status measure_drawing(drawing_source *d) {
   conic_source_scale *scale = &d->base.scale;
   double start = conic_seconds_now();
@@ -362,7 +387,7 @@ static conic_status open_drawing(conic_source *source, const char *const *paths,
       return CONIC_ERROR_MEMORY;
     memcpy(d->lean.cache, options->cache, n);
   }
-  if (n_paths == 1)
+  if (n_paths == 1 && !options->place)
     status = borrow_splats(d, paths[0], options);
   for (size_t i = 0; i < n_paths && status == CONIC_OK && !d->is_lent; i++) {
     double own[3] = {0.0, 0.0, 0.0};
@@ -373,6 +398,8 @@ static conic_status open_drawing(conic_source *source, const char *const *paths,
   }
   if (status == CONIC_OK)
     status = dress(d, options);
+  if (status == CONIC_OK)
+    status = place_inputs(d, options->place);
   if (up[0] != 0.0 || up[1] != 0.0 || up[2] != 0.0) {
     memcpy(scale->up, up, sizeof up);
     scale->up_basis = CONIC_UP_KIND;

@@ -45,6 +45,24 @@ conic_status conic_moved_begin(conic_context *context, const conic_drawing *rest
   return status;
 }
 
+static void swap_arrays(float *a[3], float *b[3]) {
+  for (int axis = 0; axis < 3; axis++) {
+    float *const kept = a[axis];
+    a[axis] = b[axis];
+    b[axis] = kept;
+  }
+}
+
+void conic_moved_swap(conic_splats *rest, conic_triangles *rest_triangles, conic_splats *moved,
+                      conic_triangles *moved_triangles) {
+  swap_arrays(rest->position, moved->position);
+  swap_arrays(rest->tangent_u, moved->tangent_u);
+  swap_arrays(rest->tangent_v, moved->tangent_v);
+  swap_arrays(rest_triangles->position, moved_triangles->position);
+  if (rest_triangles->normal[0])
+    swap_arrays(rest_triangles->normal, moved_triangles->normal);
+}
+
 void conic_moved_end(conic_context *context, conic_splats *splats, conic_triangles *triangles) {
   release_arrays(context, splats->position);
   release_arrays(context, splats->tangent_u);

@@ -15,6 +15,9 @@ size_t conic_triangles_normals(const conic_triangles *triangles);
  * conic_moved_end, on failure, too. Errors: MEMORY. */
 conic_status conic_moved_begin(conic_context *context, const conic_drawing *rest, conic_splats *splats,
                                conic_triangles *triangles);
+/* Exchanges the arrays that the two have for themselves. */
+void conic_moved_swap(conic_splats *rest, conic_triangles *rest_triangles, conic_splats *moved,
+                      conic_triangles *moved_triangles);
 void conic_moved_end(conic_context *context, conic_splats *splats, conic_triangles *triangles);
 
 /* Whether a shape has as many splats, vertices and normals as a range has. */

@@ -101,6 +101,11 @@ conic_status conic_source_open(conic_context *context, const char *const *paths,
        (kind == &conic_source_kind_layers &&
         (strcmp(own.coloring->by, "height") == 0 || strcmp(own.coloring->by, "normal") == 0))))
     return conic_coloring_refuse(context, paths[0], &own);
+  if (own.place && !(kind->abilities & CONIC_SOURCE_COMPOSITES) && kind != &conic_source_kind_drawing)
+    return conic_fail(context, CONIC_ERROR_INPUT,
+                      "%s: only Gaussian scenes, and points and meshes that are read whole, "
+                      "have a place of their own",
+                      paths[0]);
   if (own.where && kind != &conic_source_kind_layers && kind != &conic_source_kind_drawing)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: points are chosen of files of points and of .lpc alone",
                       paths[0]);

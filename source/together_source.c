@@ -7,6 +7,7 @@
 #include "core/splats/near.h"
 #include "gaussians/scene/gaussian_set.h"
 #include "source/gaussians_source.h"
+#include "source/places.h"
 
 /* --- scenes --- */
 
@@ -61,8 +62,34 @@ static conic_status read_scene(conic_context *context, const char *path, conic_g
   return status;
 }
 
+/* Puts a scene where it is to stand; one that is lent is copied for it. Errors: MEMORY. */
+static conic_status place_scene(conic_context *context, const conic_place *place, conic_gaussians *set, int *is_lent) {
+  const conic_gaussians given = *set;
+  if (!place->is_moved)
+    return CONIC_OK;
+  if (*is_lent) {
+    conic_status status =
+        conic_gaussians_allocate(context, given.count, given.sh_degree, conic_gaussians_fields(&given), set);
+    if (status != CONIC_OK)
+      return status;
+    *is_lent = 0;
+    conic_gaussians_put(&given, set, 0);
+    memcpy(set->origin, given.origin, sizeof set->origin);
+    memcpy(set->frame, given.frame, sizeof set->frame);
+    memcpy(set->up, given.up, sizeof set->up);
+    set->is_linear = given.is_linear;
+  }
+  double up[3];
+  conic_gaussians_find_up(set, up);
+  for (int axis = 0; axis < 3; axis++) /* which its frame does not say any more */
+    set->up[axis] = (float)up[axis];
+  conic_gaussians_rotate(context, set, place->rotation);
+  conic_gaussians_shift(set, place->scale, place->shift);
+  return CONIC_OK;
+}
+
 /* Reads the inputs that are scenes. */
-static conic_status read_scenes(conic_gaussians_source *g, const char *const *paths) {
+static conic_status read_scenes(conic_gaussians_source *g, const char *const *paths, const conic_place *places) {
   conic_context *context = g->base.context;
   conic_gaussians *sets = conic_memory_allocate_zeroed(context, g->n_inputs, sizeof *sets);
   int *are_lent = conic_memory_allocate_zeroed(context, g->n_inputs, sizeof *are_lent);
@@ -73,6 +100,8 @@ static conic_status read_scenes(conic_gaussians_source *g, const char *const *pa
       continue;
     g->inputs[i].first_id = (uint32_t)count;
     status = read_scene(context, paths[i], &sets[n], &are_lent[n]);
+    if (status == CONIC_OK)
+      status = place_scene(context, &places[i], &sets[n], &are_lent[n]);
     if (status == CONIC_OK)
       status = check_alike(context, &sets[0], &sets[n], paths[i]);
     count += sets[n++].count;
@@ -93,18 +122,24 @@ static conic_status open_surfaces(conic_gaussians_source *g, const char *const *
                                   const conic_source_options *options) {
   conic_context *context = g->base.context;
   const char **others = conic_memory_allocate_zeroed(context, g->n_inputs, sizeof *others);
+  int *is_other = conic_memory_allocate_zeroed(context, g->n_inputs, sizeof *is_other);
   conic_source_options own = *options;
-  conic_status status = others ? CONIC_OK : CONIC_ERROR_MEMORY;
+  conic_status status = others && is_other ? CONIC_OK : CONIC_ERROR_MEMORY;
   size_t n = 0;
+  char *place = NULL;
   own.gaussians = NULL;
-  for (size_t i = 0; others && i < g->n_inputs; i++)
+  for (size_t i = 0; status == CONIC_OK && i < g->n_inputs; i++)
     if (!g->inputs[i].is_gaussian) {
       g->inputs[i].first_id = (uint32_t)n;
+      is_other[i] = 1;
       others[n++] = paths[i];
     }
-  if (n > 0)
+  if (status == CONIC_OK)
+    status = conic_places_part(context, options->place, is_other, g->n_inputs, &place);
+  own.place = place;
+  if (status == CONIC_OK && n > 0)
     status = conic_source_open(context, others, n, &own, &g->surfaces);
-  conic_memory_release(context, others);
+  conic_memory_release_these(context, (void *)others, is_other, place);
   return status;
 }
 
@@ -143,7 +178,12 @@ static conic_status open_together(conic_source *source, const char *const *paths
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < n_paths; i++)
     g->inputs[i].is_gaussian = conic_gaussians_source_takes(paths[i], options);
-  conic_status status = read_scenes(g, paths);
+  conic_place *places = conic_memory_allocate(source->context, n_paths, sizeof *places);
+  conic_status status =
+      places ? conic_places_read(source->context, options->place, n_paths, places) : CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK)
+    status = read_scenes(g, paths, places);
+  conic_memory_release(source->context, places);
   if (status == CONIC_OK)
     status = conic_gaussians_source_measure(g);
   if (status == CONIC_OK)
@@ -168,9 +208,13 @@ static size_t find_input(const conic_source *source, uint32_t id) {
 static conic_status open_scene(conic_source *source, const char *const *paths, size_t n_paths,
                                const conic_source_options *options) {
   conic_gaussians_source *g = (conic_gaussians_source *)source;
-  (void)n_paths;
+  conic_place place;
   g->options = *options->gaussians;
-  conic_status status = read_scene(source->context, paths[0], &g->gaussians, &g->is_lent);
+  conic_status status = conic_places_read(source->context, options->place, n_paths, &place);
+  if (status == CONIC_OK)
+    status = read_scene(source->context, paths[0], &g->gaussians, &g->is_lent);
+  if (status == CONIC_OK)
+    status = place_scene(source->context, &place, &g->gaussians, &g->is_lent);
   return status == CONIC_OK ? conic_gaussians_source_measure(g) : status;
 }
 

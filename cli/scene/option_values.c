@@ -58,6 +58,15 @@ int cli_parse_eye(const char *text, void *eye) {
   return cli_parse_vector(text, eye);
 }
 
+int cli_parse_place(const char *text, void *value) {
+  cli_render_job *job = value;
+  const char *equals = strrchr(text, '=');
+  if (!equals || equals == text || !equals[1] || job->n_places >= CLI_MOST_PLACES)
+    return 0;
+  job->places[job->n_places++] = text;
+  return 1;
+}
+
 int cli_parse_exposure(const char *text, void *value) {
   cli_render_job *job = value;
   job->is_exposure_automatic = strcmp(text, "auto") == 0;

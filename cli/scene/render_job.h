@@ -26,6 +26,8 @@ typedef struct cli_stereo {
   int side; /* that is drawn: -1 the left eye, 1 the right, 0 the only one */
 } cli_stereo;
 
+enum { CLI_MOST_PLACES = 64, CLI_PLACE_ROOM = 16384 };
+
 typedef struct cli_render_job {
   /* The picture: what the options say of it, and for each frame what is open (cli/render/fill_shot.h). */
   conic_shot shot;
@@ -101,6 +103,9 @@ typedef struct cli_render_job {
 
   /* What is drawn. */
   conic_source_options opening;
+  const char *places[CLI_MOST_PLACES]; /* FILE=MATRIX, of which `place` becomes the opening's */
+  int n_places;
+  char place[CLI_PLACE_ROOM];
   conic_patches_options patches; /* the opening's, as is the next */
   conic_layers_access access;
   conic_coloring_options coloring; /* the opening's, if it has one; `by` null: not given */

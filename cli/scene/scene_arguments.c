@@ -239,6 +239,12 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .parse = parse_crease, .acts = {.on = CLI_FACT(EDGES), .needs = CLI_FACT(SHAPED)}},
       CLI_COLOR_OPTIONS(&job->coloring),
       CLI_WHERE(&job->opening.where),
+      {"place", CLI_PARSED, job, "FILE=MATRIX",
+       "where an input stands: a shift of 3 numbers, or 12 or 16 of a matrix, row by row, that turns, scales evenly "
+       "and "
+       "shifts [as the file has it]",
+       .parse = cli_parse_place, .may_repeat = 1,
+       .acts = {.on = CLI_FACT(COMPOSITED) | CLI_FACT(SPLATS) | CLI_FACT(TRIANGLES)}},
       {"error", CLI_NUMBER, &job->shot.view.error_px, "PX[:STEPS]",
        "draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a .chy, "
        "also "

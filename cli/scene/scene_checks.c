@@ -88,6 +88,40 @@ static int check_each_value(const cli_session *session, const cli_scene_words *w
   return CLI_DONE;
 }
 
+/* Which input a FILE=MATRIX is of: by its name, or by the last part of it where no other input has the same; -1: none.
+ */
+static int find_placed(const cli_render_job *job, const char *text, const char *equals) {
+  const size_t length = (size_t)(equals - text);
+  int found = -1, n_found = 0;
+  for (int i = 0; i < job->n_inputs; i++) {
+    const char *name = job->inputs[i], *slash = strrchr(name, '/');
+    if (strlen(name) == length && strncmp(name, text, length) == 0)
+      return i;
+    if (slash && strlen(slash + 1) == length && strncmp(slash + 1, text, length) == 0) {
+      found = i;
+      n_found++;
+    }
+  }
+  return n_found == 1 ? found : -1;
+}
+
+/* The text of conic_source_options.place. */
+static int settle_places(const cli_session *session, cli_render_job *job) {
+  size_t used = 0;
+  for (int k = 0; k < job->n_places; k++) {
+    const char *text = job->places[k], *equals = strrchr(text, '=');
+    const int i = find_placed(job, text, equals);
+    if (i < 0)
+      return cli_usage("%s: --place %.*s: it is none of the inputs", session->command, (int)(equals - text), text);
+    used += (size_t)snprintf(job->place + used, CLI_PLACE_ROOM - used, "%s%d:%s", k ? ";" : "", i, equals + 1);
+    if (used >= CLI_PLACE_ROOM)
+      return cli_usage("%s: --place has too many digits", session->command);
+  }
+  if (job->n_places)
+    job->opening.place = job->place;
+  return CLI_DONE;
+}
+
 int cli_scene_check(const cli_session *session, cli_scene_words *words, cli_render_job *job) {
   int answer = check_each_value(session, words, job);
   if (job->n_inputs == 0)
@@ -96,6 +130,8 @@ int cli_scene_check(const cli_session *session, cli_scene_words *words, cli_rend
     answer = settle_top(session, job);
   if (answer == CLI_DONE)
     answer = check_colors(session, words, job);
+  if (answer == CLI_DONE)
+    answer = settle_places(session, job);
   if (answer != CLI_DONE)
     return answer;
   job->is_every_view = cli_views_are_all(job->view_name);
@@ -107,6 +143,10 @@ int cli_scene_check(const cli_session *session, cli_scene_words *words, cli_rend
   job->opening.is_whole =
       !cli_lod_is_wanted(job) && !job->boxes_path && !(job->is_for_looking && job->abilities & CONIC_SOURCE_STREAMS);
   answer = cli_effects_check(session, words, job);
+  if (answer == CLI_DONE && job->abilities & CONIC_SOURCE_MIXES && !job->is_for_looking &&
+      strcmp(session->command, "verify") != 0)
+    answer = cli_usage("%s: it takes Gaussian scenes, or surfaces; conic render and conic verify take both together",
+                       session->command);
   job->shot.view.is_alone &=
       job->shot.view.error_px > 0.0 && !job->opening.cache && !(job->effects.asked & CLI_DRAWS_MORE);
   if (answer == CLI_DONE && job->abilities & CONIC_SOURCE_CLUSTERS && job->n_inputs != 1)

@@ -1,6 +1,7 @@
 /* Frames, and scenes turned from one to another. */
 
 #include "core/base/vectors.h"
+#include "gaussians/scene/activation.h"
 #include "gaussians/scene/gaussian_set.h"
 #include "gaussians/scene/harmonics.h"
 
@@ -135,6 +136,19 @@ void conic_gaussians_rotate(conic_context *context, conic_gaussians *gaussians, 
   for (int axis = 0; axis < 3; axis++)
     gaussians->up[axis] = sum_terms(rotation[axis], up, 3);
   conic_parallel_for(context, (gaussians->count + BLOCK - 1) / BLOCK, turn_block, &self);
+}
+
+void conic_gaussians_shift(conic_gaussians *gaussians, double scale, const double shift[3]) {
+  for (int axis = 0; axis < 3; axis++) {
+    gaussians->origin[axis] = gaussians->origin[axis] * scale + shift[axis];
+    for (size_t i = 0; scale != 1.0 && i < gaussians->count; i++) {
+      gaussians->position[axis][i] = (float)((double)gaussians->position[axis][i] * scale);
+      if (gaussians->scale[axis])
+        gaussians->scale[axis][i] = (float)((double)gaussians->scale[axis][i] * scale);
+      if (gaussians->log_scale[axis])
+        gaussians->log_scale[axis][i] = conic_log_of_scale(gaussians->scale[axis][i]);
+    }
+  }
 }
 
 void conic_gaussians_find_up(const conic_gaussians *gaussians, double up[3]) {

@@ -56,5 +56,8 @@ void conic_gaussians_put(const conic_gaussians *from, conic_gaussians *to, size_
 /* Turns a scene about the origin by a rotation, harmonics too. */
 void conic_gaussians_rotate(conic_context *context, conic_gaussians *gaussians, const double rotation[3][3]);
 
+/* Scales a scene evenly about the origin, and shifts it then. */
+void conic_gaussians_shift(conic_gaussians *gaussians, double scale, const double shift[3]);
+
 /* Whether a set that a caller hands in is whole. Errors: ARGUMENT. */
 conic_status conic_gaussians_check(conic_context *context, const conic_gaussians *gaussians, const char *name);

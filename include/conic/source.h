@@ -62,6 +62,10 @@ typedef struct conic_source_options {
   const char *cache; /* a folder that keeps what an error or a budget has built of splats and triangles in memory, up to
                         4 GiB, by what these hold: several processes may use it at a time; null: none */
   int colors_are;    /* what fractions of 1 mean as colours, as in conic_read_options */
+  const char *place; /* where inputs stand: "I:" and their numbers, I from 0, with semicolons between. Three numbers
+                        shift, twelve are the rows of a matrix of 3 x 4, sixteen of 4 x 4, which turns, scales evenly
+                        and shifts what the file has. Of Gaussian scenes, and of what is read whole. Null: all as their
+                        files have it */
 } conic_source_options;
 
 /* Splats, cutoff 1.5, 20 neighbours, no dots, flat faces. */
