@@ -79,6 +79,26 @@ int cli_parse_noting(cli_session *session, const cli_option *options, int n_opti
         "a glTF may name buffers and pictures outside of its folder", .acts.is_work = 1                                \
   }
 
+/* For commands that read all of a cloud that may be on a web server. */
+#define CLI_WAITING(session)                                                                                           \
+  {"timeout",                                                                                                          \
+   CLI_NUMBER,                                                                                                         \
+   &(session)->stall_seconds,                                                                                          \
+   "S",                                                                                                                \
+   "of a URL, a server that is silent for so long is asked again, up to 4 times [15]",                                 \
+   1,                                                                                                                  \
+   3600,                                                                                                               \
+   .acts = {.on = CLI_FACT(URL), .is_work = 1, .is_warned = 1}},                                                       \
+  {                                                                                                                    \
+    "deadline", CLI_NUMBER, &(session)->deadline, "S",                                                                 \
+        "of a URL, no more is read after so many seconds; where not all has come, nothing is written", 0.001, 1e6,     \
+        .acts = {                                                                                                      \
+          .on = CLI_FACT(URL),                                                                                         \
+          .is_work = 1,                                                                                                \
+          .is_warned = 1                                                                                               \
+        }                                                                                                              \
+  }
+
 /* For commands that read textures. */
 #define CLI_TEXTURE_BOUND(session)                                                                                     \
   {                                                                                                                    \

@@ -223,6 +223,10 @@ static int tell_host(cli_session *session, cli_host *host, const char *task, dou
 
 static int on_progress(void *cookie, const char *task, double fraction) {
   cli_session *session = cookie;
+  if (session->deadline > 0.0 && strcmp(task, "fetch") == 0 && cli_seconds() > session->late_seconds)
+    session->is_late = 1;
+  if (session->is_late)
+    return 1;
   if (session->host)
     return tell_host(session, session->host, task, fraction);
   if (session->has_bar) {
@@ -250,6 +254,11 @@ static int is_said_again(cli_session *session, const char *message) {
 static void on_log(void *cookie, conic_log_level level, const char *message) {
   static const char cancelled[] = ": cancelled";
   cli_session *session = cookie;
+  char late[128];
+  if (level == CONIC_LOG_ERROR && session->is_late) {
+    snprintf(late, sizeof late, "%s: not all has come within --deadline %.9g", session->command, session->deadline);
+    message = late;
+  }
   if (level == CONIC_LOG_WARNING && is_said_again(session, message))
     return;
   if (session->host) {
@@ -327,6 +336,7 @@ int cli_session_open(cli_session *session) {
   options.large_pages = session->draws_many_frames;
   options.isa = session->isa;
   options.allows_outside = session->allows_outside;
+  session->late_seconds = cli_seconds() + session->deadline;
   if (session->max_texture_mib)
     options.max_texture_bytes = (size_t)session->max_texture_mib << 20;
   if (session->host)

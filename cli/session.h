@@ -22,6 +22,10 @@ typedef struct cli_session {
   const char *part;      /* cli_session_part; null: none */
   int i_part, n_parts;
   double part_share;     /* of the part, what is done */
+  double stall_seconds;  /* --timeout of commands that make files; 0: the library's */
+  double deadline;       /* their --deadline: seconds after opening; 0: none */
+  double late_seconds;   /* when that is, by cli_seconds */
+  int is_late;           /* it has passed, and more was to come from a server */
   int max_texture_mib;   /* --max-texture; 0: the library's bound. It is set before cli_session_open, as are those: */
   int allows_outside;    /* --allow-outside */
   int draws_many_frames; /* of the same model; this and isa are set before cli_session_open */

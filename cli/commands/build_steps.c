@@ -60,7 +60,7 @@ void cli_build_reading(const cli_build *build, conic_read_options *options) {
 }
 
 conic_status cli_build_know(cli_build *build, cli_facts possible) {
-  build->effects.possible = possible;
+  build->effects.possible = possible | (conic_layers_is_url(build->input) ? CLI_FACT(URL) : 0);
   int answer = cli_effects_check_given(build->session, &build->effects, build->input, NULL);
   return answer == CLI_DONE ? CONIC_OK : CONIC_ERROR_ARGUMENT;
 }
@@ -91,8 +91,8 @@ static int may_have_fractions(const cli_build *build, const char *path) {
 
 cli_facts cli_build_facts_of_file(const cli_build *build, const char *path) {
   const int may_be_text = !build->columns || cli_points_may_be_text(build->session->context, path);
-  return CLI_SOURCE_FACTS &
-         ~((may_be_text ? 0 : CLI_FACT(TEXT)) | (may_have_fractions(build, path) ? 0 : CLI_FACT(FRACTIONS)));
+  return CLI_SOURCE_FACTS & ~((conic_layers_is_url(path) ? 0 : CLI_FACT(URL)) | (may_be_text ? 0 : CLI_FACT(TEXT)) |
+                              (may_have_fractions(build, path) ? 0 : CLI_FACT(FRACTIONS)));
 }
 
 int cli_build_parse(cli_build *build, const cli_option *options, int n_options, int argc, char **argv,

@@ -23,19 +23,19 @@ typedef struct csg_job {
 enum { READ, ESTIMATE, WORK, WRITE };
 
 static conic_status read_solids(csg_job *job) {
-  conic_context *context = job->base.session->context;
   conic_read_options options;
   cli_build_reading(&job->base, &options);
   options.cutoff = job->estimate.cutoff;
   conic_status status = CONIC_OK;
   for (int i = 0; i < 2 && status == CONIC_OK; i++) {
     job->base.input = job->inputs[i];
-    status = cli_points_read(context, job->inputs[i], &options, &job->models[i]);
+    status = cli_points_read(job->base.session, job->inputs[i], &options, &job->models[i]);
     if (status == CONIC_OK)
       status = cli_build_leave_far(&job->base, &job->models[i].points);
   }
   return status == CONIC_OK
-             ? cli_build_know(&job->base, cli_build_facts(&job->models[0]) | cli_build_facts(&job->models[1]))
+             ? cli_build_know(&job->base, cli_build_facts(&job->models[0]) | cli_build_facts(&job->models[1]) |
+                                              (conic_layers_is_url(job->inputs[0]) ? CLI_FACT(URL) : 0))
              : status;
 }
 
@@ -130,6 +130,7 @@ static int run_csg(cli_session *session, int argc, char **argv) {
        .acts = {.on = CLI_FACT(RAW), .is_warned = 1}},
       {"cutoff", CLI_NUMBER, &job.cutoff, "F", "the --cutoff of the pictures to come [1.5]", 0.25, 5},
       CLI_READING(session, &job.base),
+      CLI_WAITING(session),
   };
   int exit_code =
       cli_build_arguments(&job.base, options, sizeof options / sizeof *options, argc, argv, positional, &n_positional);

@@ -65,10 +65,8 @@ static int is_in_layers(const cut_job *job) {
 
 /* Opens a layered cloud, with the wanted part. */
 static conic_status open_cut_layers(const cut_job *job, conic_layers **layers) {
-  conic_layers_access access;
-  conic_layers_access_init(&access);
-  access.memory_bytes = (uint64_t)(job->memory_mib * 1048576.0);
-  conic_status status = conic_layers_open(job->base.session->context, job->base.input, &access, layers);
+  conic_status status =
+      cli_points_open(job->base.session, job->base.input, (uint64_t)(job->memory_mib * 1048576.0), layers);
   if (status == CONIC_OK && job->base.where)
     status = conic_layers_choose(*layers, NULL, job->base.where, NULL);
   return status;
@@ -162,7 +160,7 @@ static conic_status cut_to_layers(cut_job *job) {
 static conic_status cut_to_las(cut_job *job) {
   conic_context *context = job->base.session->context;
   conic_georeference reference;
-  conic_status status = cli_points_find_reference(context, job->base.input, &reference);
+  conic_status status = cli_points_find_reference(job->base.session, job->base.input, &reference);
   if (status == CONIC_OK) {
     status = conic_las_writer_open(context, job->base.output, job->base.input, &reference, &job->las);
     conic_georeference_release(context, &reference);
@@ -248,6 +246,7 @@ static int run_cut(cli_session *session, int argc, char **argv) {
       {"cutoff", CLI_NUMBER, &job.cutoff, "F", "the --cutoff of the pictures to come [1.5]", 0.25, 5,
        .acts.with = "o=.lpc"},
       CLI_READING(session, &job.base),
+      CLI_WAITING(session),
   };
   int exit_code =
       cli_build_arguments(&job.base, options, sizeof options / sizeof *options, argc, argv, positional, &n_positional);

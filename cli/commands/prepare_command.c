@@ -75,7 +75,7 @@ static conic_status read_model(prepare_job *job) {
   cli_build_reading(&job->base, &options);
   options.cutoff = job->estimate.cutoff;
   cli_coloring_read(&job->coloring, &options);
-  conic_status status = cli_points_read(job->base.session->context, job->base.input, &options, &job->model);
+  conic_status status = cli_points_read(job->base.session, job->base.input, &options, &job->model);
   job->n_in = status == CONIC_OK ? job->model.points.count : 0;
   if (status == CONIC_OK)
     status =
@@ -179,6 +179,7 @@ static int run_prepare(cli_session *session, int argc, char **argv) {
        "which points --count chooses; those of a smaller count are among those of a larger one [0]",
        .acts.with = "count"},
       CLI_READING(session, &job.base),
+      CLI_WAITING(session),
       CLI_WHERE(&job.base.where),
       {"plain", CLI_FLAG, &job.is_plain, NULL,
        "every point becomes an ellipse; else those that lie on no surface become round dots", .acts.on = CLI_FACT(RAW)},

@@ -227,6 +227,7 @@ static int run_layer(cli_session *session, int argc, char **argv) {
       CLI_LAYER_KEEPING(job),
       CLI_WHERE(&job.base.where),
       CLI_READING(session, &job.base),
+      CLI_WAITING(session),
       CLI_BUILD_COLOR_OPTIONS(&job.coloring, NULL),
   };
   int exit_code =
@@ -271,6 +272,7 @@ static int run_merge(cli_session *session, int argc, char **argv) {
        "what building may take in memory; what does not fit goes to files beside the output [1024]", 16, 1e9,
        .acts.is_work = 1},
       CLI_LAYER_KEEPING(job),
+      CLI_WAITING(session),
   };
   int exit_code =
       cli_parse(session, options, sizeof options / sizeof options[0], argc, argv, positional, &job.n_inputs);

@@ -1,11 +1,9 @@
 #include "cli/layer/layer_job.h"
+#include "cli/points/points_input.h"
 
 conic_status cli_layer_open_input(cli_layer_job *job, const char *path, conic_layers **layers) {
-  conic_layers_access access;
-  conic_layers_access_init(&access);
-  access.memory_bytes = job->options.memory_bytes / 2;
   job->base.input = path;
-  return conic_layers_open(job->base.session->context, path, &access, layers);
+  return cli_points_open(job->base.session, path, job->options.memory_bytes / 2, layers);
 }
 
 /* The values of a continued file become those of the whole. */

@@ -82,7 +82,7 @@ static conic_status read_whole_file(cli_layer_job *job, const conic_read_options
   conic_context *context = job->base.session->context;
   conic_repairs repairs;
   conic_model model;
-  conic_status status = cli_points_read(context, job->base.input, options, &model);
+  conic_status status = cli_points_read(job->base.session, job->base.input, options, &model);
   if (status != CONIC_OK)
     return status;
   cli_build_hint_faces(&job->base, &model);
@@ -96,16 +96,15 @@ static conic_status read_whole_file(cli_layer_job *job, const conic_read_options
 }
 
 static conic_status read_raw(cli_layer_job *job, const conic_read_options *options) {
-  conic_context *context = job->base.session->context;
   job->n_points = 0;
   job->is_counting = 1;
-  conic_status status = cli_points_stream(context, job->base.input, options, take_layer_batch, job);
+  conic_status status = cli_points_stream(job->base.session, job->base.input, options, take_layer_batch, job);
   job->is_counting = job->may_read_again = 0;
   if (status != CONIC_OK)
     return status;
   if (job->n_points <= cli_layer_most_whole(job))
     return read_whole_file(job, options);
-  return cli_points_stream(context, job->base.input, options, take_layer_batch, job);
+  return cli_points_stream(job->base.session, job->base.input, options, take_layer_batch, job);
 }
 
 void cli_layer_reading(const cli_layer_job *job, conic_read_options *options) {

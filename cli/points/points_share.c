@@ -244,7 +244,7 @@ conic_status cli_points_share_out(cli_points_share *share, const conic_read_opti
 conic_status cli_points_share_stream(const cli_points_share *share, const cli_points_piece *piece,
                                      const conic_read_options *options, conic_batch_receiver *receive, void *cookie) {
   const char *path = share->inputs[piece->input];
-  return piece->is_whole ? cli_points_stream(share->session->context, path, options, receive, cookie)
+  return piece->is_whole ? cli_points_stream(share->session, path, options, receive, cookie)
                          : conic_model_stream_part(share->session->context, path, options, &piece->range,
                                                    &piece->survey, receive, cookie);
 }

@@ -979,6 +979,8 @@ def prepare(
     columns: Optional[Union[str, float, Sequence[float]]] = None,
     colors: Optional[Literal["file", "display", "linear"]] = None,
     allow_outside: Optional[bool] = None,
+    timeout: Optional[float] = None,
+    deadline: Optional[float] = None,
     where: Optional[PathLike] = None,
     plain: Optional[bool] = None,
     bake: Optional[Union[str, float, Sequence[float]]] = None,
@@ -1003,6 +1005,8 @@ def prepare(
     colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
         ones, as conic's .ply has them: file, display, linear [file]
     allow_outside: a glTF may name buffers and pictures outside of its folder
+    timeout: of a URL, a server that is silent for so long is asked again, up to 4 times [15]
+    deadline: of a URL, no more is read after so many seconds; where not all has come, nothing is written
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
     plain: every point becomes an ellipse; else those that lie on no surface become round dots
@@ -1080,6 +1084,8 @@ def layers(
     columns: Optional[Union[str, float, Sequence[float]]] = None,
     colors: Optional[Literal["file", "display", "linear"]] = None,
     allow_outside: Optional[bool] = None,
+    timeout: Optional[float] = None,
+    deadline: Optional[float] = None,
     color_by: Optional[PathLike] = None,
     ramp: Optional[Union[str, float, Sequence[float]]] = None,
     up: Optional[Union[str, float, Sequence[float]]] = None,
@@ -1108,6 +1114,8 @@ def layers(
     colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
         ones, as conic's .ply has them: file, display, linear [file]
     allow_outside: a glTF may name buffers and pictures outside of its folder
+    timeout: of a URL, a server that is silent for so long is asked again, up to 4 times [15]
+    deadline: of a URL, no more is read after so many seconds; where not all has come, nothing is written
     color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value
         in the file by its name; auto: rgb, or else intensity [auto]
     ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain, viridis, magma, turbo or
@@ -1192,6 +1200,8 @@ def csg(
     columns: Optional[Union[str, float, Sequence[float]]] = None,
     colors: Optional[Literal["file", "display", "linear"]] = None,
     allow_outside: Optional[bool] = None,
+    timeout: Optional[float] = None,
+    deadline: Optional[float] = None,
 ) -> Scene:
     """Joins two solids (`union=True`), intersects them (`intersection`), or takes one from the other (`difference`).
 
@@ -1207,6 +1217,8 @@ def csg(
     colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
         ones, as conic's .ply has them: file, display, linear [file]
     allow_outside: a glTF may name buffers and pictures outside of its folder
+    timeout: of a URL, a server that is silent for so long is asked again, up to 4 times [15]
+    deadline: of a URL, no more is read after so many seconds; where not all has come, nothing is written
     threads: how many threads compute; the results never depend on it [0: all]
     """
 

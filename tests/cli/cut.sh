@@ -72,6 +72,30 @@ n_read=$(sed -nE 's/^ *"points_in": ([0-9]+),?$/\1/p' half.json)
 run 0 cut knot.lpc --error 0.2 -o coarse.ply
 [[ $(points_in coarse.ply) -lt 40000 ]] || fail "--error reads all"
 
+# What reads from a web server ends by --deadline, and writes nothing that is not whole; --timeout gives a server up.
+if command -v python3 > /dev/null; then
+  python3 "$1/tests/cli/slow_server.py" "$PWD" 60000 > slow.port &
+  trap 'kill '$! EXIT
+  for _ in {1..100}; do [[ -s slow.port ]] || sleep 0.05; done
+  url=http://127.0.0.1:$(cat slow.port)/knot.lpc
+  begun=$(date +%s)
+  for command in cut layer merge prepare csg; do
+    inputs=("$url")
+    case $command in merge) inputs+=(knot.lpc) ;; csg) inputs+=(knot.ply --union) ;; esac
+    ending=ply
+    case $command in layer | merge) ending=lpc ;; esac
+    run 4 "$command" "${inputs[@]}" --deadline 0.2 -o never.$ending
+    [[ ! -e never.$ending ]] || fail "$command: a part of it was written"
+  done
+  run 4 cut "$url" --deadline 2.5 -o never.ply # it comes in six seconds
+  [[ $(($(date +%s) - begun)) -le 10 && ! -e never.ply ]] || fail "a deadline was not kept"
+  kill $!
+  trap - EXIT
+  run 0 cut knot.lpc --box 0,-9,-9,9,9,9 --deadline 1 --timeout 1 -o again.ply
+  [[ $(grep -c 'has no effect: it acts on URLs' err) -eq 2 ]] || fail "of a file: $(cat err)"
+  cmp -s half.ply again.ply || fail "a deadline changed a file"
+fi
+
 # Of a layered cloud values go along, too; merge and --append want the same of all.
 run 0 layer sheet.csv -o sheet.lpc --keep class
 run 0 cut sheet.lpc --where 'x < 600020' -o west.lpc
