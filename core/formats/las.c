@@ -256,7 +256,10 @@ static conic_status read_plain_las(las_reader *reader) {
     if (status != CONIC_OK)
       break;
     if (n == 0) { /* nobody could tell before where the input is a pipe */
-      warn(reader, "the file ends before all of its points");
+      if (!reader->is_again)
+        conic_log(input->context, CONIC_LOG_WARNING,
+                  "%s: the file ends before all of its points: %llu of %llu are left out", input->name,
+                  (unsigned long long)left, (unsigned long long)reader->n_points);
       break;
     }
     n = n < left ? n : (size_t)left;

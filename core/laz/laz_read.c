@@ -77,11 +77,6 @@ static conic_status note_spoiled(laz_reading *r, conic_status status) {
   return status;
 }
 
-static void laz_warn(const laz_reading *r, const char *what) {
-  if (!r->is_again)
-    conic_log(r->context, CONIC_LOG_WARNING, "%s: LAZ: %s", r->from.input->name, what);
-}
-
 /* --- the table --- */
 
 /* Finds the table: its offset is before the first chunk, or, in a file written to a pipe, at the very end; 0: there is
@@ -311,12 +306,13 @@ static conic_status read_listed(laz_reading *r) {
   return status;
 }
 
-/* Reads chunks one after the other, each from where the one before ends. If the file ends within a chunk, the whole
- * chunks have been read. */
+/* Reads chunks one after the other, each from where the one before ends, with all fields: which of them are spoiled
+ * must not decide how many points there are. If the file ends within a chunk, the whole chunks have been read. */
 static conic_status read_unlisted(laz_reading *r, uint64_t offset) {
   const conic_laz_format *format = r->format;
   int is_counted = format->chunk_points != CONIC_LAZ_VARIABLE;
   conic_status status = CONIC_OK;
+  r->wanted = CONIC_LAZ_ALL;
   for (uint64_t i = 0, n_bytes = 0; r->n_read < r->end; i++, offset += n_bytes) {
     uint64_t left = r->n_points - r->n_read, n_points = left;
     if (is_counted)
@@ -325,12 +321,8 @@ static conic_status read_unlisted(laz_reading *r, uint64_t offset) {
       n_points = 0;
     uint64_t n_before = r->n_read;
     status = read_chunk(r, offset, n_points, &n_bytes);
-    if (r->is_spoiled && r->n_read > 0) {
-      laz_warn(r, "the file ends before all of its points");
-      return CONIC_OK;
-    }
     if (r->is_spoiled)
-      return laz_spoiled(r, offset, i);
+      return r->n_read > 0 ? CONIC_OK : laz_spoiled(r, offset, i);
     if (status != CONIC_OK || r->n_read == n_before)
       break;
   }
@@ -365,8 +357,10 @@ static conic_status read_all_chunks(laz_reading *r) {
     return conic_fail(r->context, CONIC_ERROR_INPUT, "%s: LAZ: the table of the chunks is missing (at byte %llu)",
                       r->from.input->name, (unsigned long long)r->from.start);
   else {
-    if (is_chunked)
-      laz_warn(r, "the table of the chunks is missing or spoiled; they are read one after the other");
+    if (is_chunked && !r->is_again)
+      conic_log(r->context, CONIC_LOG_WARNING,
+                "%s: LAZ: the table of the chunks is missing or spoiled; they are read one after the other",
+                r->from.input->name);
     status = read_unlisted(r, r->from.start + (is_chunked ? 8 : 0));
   }
   return status;
@@ -394,8 +388,10 @@ conic_status conic_laz_read(conic_input *input, const conic_laz_format *format, 
     status = make_decoders(&r);
   if (status == CONIC_OK)
     status = read_all_chunks(&r);
-  if (status == CONIC_OK && r.n_read < r.end && r.n_chunks > 0)
-    laz_warn(&r, "the file has fewer points than its header counts");
+  if (status == CONIC_OK && r.n_read < r.end && !is_again)
+    conic_log(r.context, CONIC_LOG_WARNING,
+              "%s: LAZ: the file ends, or is spoiled, before all of its points: %llu of %llu are left out", input->name,
+              (unsigned long long)(n_points - r.n_read), (unsigned long long)n_points);
   release_reading(&r);
   return status;
 }

@@ -22,7 +22,7 @@ typedef struct seed {
   int may_be_cut; /* what is left of it may be sound */
 } seed;
 
-enum { SEEDS_ROOM = 128 };
+enum { SEEDS_ROOM = 512 };
 
 typedef struct seed_set {
   seed seeds[SEEDS_ROOM];
@@ -32,8 +32,10 @@ typedef struct seed_set {
 static inline seed *seeds_add(seed_set *set, const char *target, const char *ending, int may_be_cut, const void *bytes,
                               size_t n_bytes) {
   seed *added = &set->seeds[set->n++];
-  if (set->n > SEEDS_ROOM)
+  if (set->n > SEEDS_ROOM) {
+    fprintf(stderr, "more than %d seeds\n", SEEDS_ROOM);
     exit(1);
+  }
   added->target = target;
   added->may_be_cut = may_be_cut;
   snprintf(added->name, sizeof added->name, "%02d.%s", set->n, ending);

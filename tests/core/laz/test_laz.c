@@ -12,6 +12,7 @@
 #include "tests/support/laz_examples.h"
 
 static conic_context *context;
+static unsigned wanted = CONIC_LAZ_ALL; /* of the fields */
 
 typedef struct unpacked {
   conic_laz_format format;
@@ -57,7 +58,7 @@ static conic_status unpack_input(conic_context *own, conic_input *input, const u
   if (status == CONIC_OK)
     status = conic_input_skip(input, conic_load_bits(bytes + 96, 4), &skipped);
   if (status == CONIC_OK)
-    status = conic_laz_read(input, &to->format, to->n_points, 0, to->n_points, CONIC_LAZ_ALL, 0, keep_records, to);
+    status = conic_laz_read(input, &to->format, to->n_points, 0, to->n_points, wanted, 0, keep_records, to);
   return status;
 }
 
@@ -136,6 +137,27 @@ static void test_cut_chunk(const laz_example *example) {
   CHECK_OK(unpack_example(&file, (size_t)table - 30, &to));
   CHECK(files_warnings == 2 && are_records(example, &to, 25));
   free(to.bytes);
+  free(file.bytes);
+}
+
+/* Without a table, whichever fields are read of spoiled layers, there are as many points. */
+static void test_fields_agree(const laz_example *example) {
+  las_file file = laz_example_file(example);
+  size_t end = (size_t)conic_load_bits(file.bytes + file.points_offset, 8), n_fewer = 0;
+  las_put(&file, file.points_offset, 0, 8);
+  for (size_t i = file.points_offset + 8; i < end; i += 7) {
+    unpacked all, places;
+    file.bytes[i] ^= 0xff;
+    conic_status status = unpack_example(&file, end, &all);
+    wanted = CONIC_LAZ_Z;
+    CHECK(unpack_example(&file, end, &places) == status && places.n_bytes == all.n_bytes);
+    wanted = CONIC_LAZ_ALL;
+    n_fewer += status == CONIC_OK && all.n_bytes < LAZ_EXAMPLE_POINTS * all.format.point_bytes;
+    free(all.bytes);
+    free(places.bytes);
+    file.bytes[i] ^= 0xff;
+  }
+  CHECK(n_fewer > 0);
   free(file.bytes);
 }
 
@@ -285,6 +307,8 @@ int main(int argc, char **argv) {
       test_cut_chunk(example);
     else
       test_no_chunk_size(example);
+    if (example->format > 7)
+      test_fields_agree(example);
     test_chunk(example);
     test_spoiled(example);
   }
