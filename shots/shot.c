@@ -148,14 +148,13 @@ conic_status conic_shot_draw(conic_source *source, conic_renderer *renderer, con
   return status;
 }
 
-/* What the exposure is found by: no background, one sample a pixel; of what is read while it is drawn, where that is to
- * be seen early, its first level. */
+/* What the exposure is found by: no background, one sample a pixel. */
 static conic_status make_plain(conic_context *context, const conic_shot *shot, conic_shot *made) {
   conic_shot plain = *shot;
   plain.render.has_background = plain.has_backdrop = 0;
   plain.render.exposure = 0.0;
   plain.view.samples = 1;
-  plain.view.most_levels = plain.view.may_be_coarser ? 1 : 0;
+  plain.view.most_levels = 0;
   plain.n_samples = 0;
   plain.aperture.diameter = 0.0;
   plain.is_shutter_open = 0;

@@ -2,6 +2,7 @@
 
 #include "core/base/context_struct.h"
 #include "core/base/trigonometry.h"
+#include "lod/octree/octree_nodes.h"
 #include "source/facing.h"
 #include "source/source_kind.h"
 
@@ -27,6 +28,7 @@ static conic_status measure_octree(octree_source *o) {
   scale->near_z = o->info.near_z;
   scale->splat_length = o->info.splat_length;
   scale->n_splats = o->info.n_points;
+  scale->has_colors = o->octree->leaves.color[0] != NULL;
   return status;
 }
 

@@ -77,6 +77,7 @@ conic_status cli_choose_exposure(cli_render_job *job) {
   if (!job->is_exposure_automatic)
     return CONIC_OK;
   double start = cli_seconds();
+  cli_deadline_begin(job);
   conic_status status = conic_shot_expose_together(job->source, job->renderer, job->executor, job->units, &job->shot);
   if (status == CONIC_OK)
     job->is_exposure_automatic = 0; /* kept for all frames */

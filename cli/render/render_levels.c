@@ -15,14 +15,14 @@ void cli_deadline_open(cli_render_job *job) {
     job->access.seconds = cli_seconds_left(job);
 }
 
-static void begin_deadline(cli_render_job *job) {
+void cli_deadline_begin(cli_render_job *job) {
   if (job->deadline > 0.0)
     job->shot.view.seconds = cli_seconds_left(job);
 }
 
 conic_status cli_render_picture(cli_render_job *job, conic_image *image, conic_shot_outcome *outcome) {
   conic_shot_work drawing;
-  begin_deadline(job);
+  cli_deadline_begin(job);
   conic_status status = cli_shot_begin(job, &drawing);
   return status == CONIC_OK ? conic_shot_work_draw(&drawing, image, outcome) : status;
 }

@@ -29,7 +29,7 @@ static const struct {
     {F(PROJECTED) | F(ASKING), 0, F(EXACT),
      "--projection is of pictures by conic render, and of Gaussian scenes by --profile exact"},
     {F(COMPOSITED), F(DEEP) | F(MATTES) | F(EXPOSED), 0,
-     "--deep, mattes and --exposure auto are of splats; give --profile surface, too"},
+     "--deep, --aov cryptomatte and --exposure auto are of splats; give --profile surface, too"},
     {F(LEVELS) | F(ASKING), CLI_CHOSEN, 0,
      "of an .lpc it takes all; --error and --budget choose of one in conic render"},
     {F(EVERY_VIEW) | F(ASKING), 0, 0, "it takes one view; conic render draws all"},
@@ -45,15 +45,16 @@ static const struct {
     {F(MAP), F(EXPOSED) | F(BACKDROP) | F(PATCH) | F(OPENCL), 0,
      "--camera top is without --exposure auto, a background of two colours, --method patch and --device opencl"},
     {F(MAP) | F(MASKED), 0, 0, "--ao, --shadow and lamps are not of --camera top"},
-    {F(MASKED) | F(COMPOSITED), 0, F(MIXED), "--ao, --shadow and lamps are of surfaces; give --profile surface, too"},
+    {F(MASKED) | F(COMPOSITED), 0, F(MIXED),
+     "--ao, --shadow, lamps and the planes ao and shadow are of surfaces; give --profile surface, too"},
     {F(DEEP) | F(SAMPLED), 0, 0, "--deep lists the splats of pixels, not of --samples"},
     {F(DEEP), CLI_CHOSEN, F(HYBRID),
      "--deep lists the splats of the input, not those that --error and --budget choose"},
-    {F(DEEP) | F(LEVELS), 0, 0, "--deep lists the splats of inputs that are read whole, not of an .lpc"},
-    {F(MATTES) | F(LEVELS), 0, 0, "cryptomatte names what is read whole, not an .lpc"},
+    {F(DEEP) | F(LEVELS), 0, 0, "--deep lists the splats of inputs that are read whole, not of a cloud in levels"},
+    {F(MATTES) | F(LEVELS), 0, 0, "--aov cryptomatte names what is read whole, not a cloud in levels"},
     {F(MATTES), CLI_CHOSEN, F(HYBRID) | F(NODES),
-     "cryptomatte names what the inputs have, not what --error and --budget join"},
-    {F(MATTES), 0, F(EXR), "cryptomatte goes into an .exr; give -o OUT.exr"},
+     "--aov cryptomatte names what the inputs have, not what --error and --budget join"},
+    {F(MATTES), 0, F(EXR), "--aov cryptomatte goes into an .exr; give -o OUT.exr"},
     {F(PROGRESSIVE), F(TURNTABLE) | F(REPEATED), 0,
      "--progressive writes the pictures of one frame, not of a turntable or of --repeat"},
     {F(TRANSPARENT) | F(MIXED), 0, F(ACCUMULATED),
@@ -239,6 +240,8 @@ static int is_waited_for(const cli_render_job *job) {
   return job->access.stall_seconds != usual.stall_seconds && job->effects.certain & (F(LEVELS) | F(HYBRID));
 }
 
+#define HAS(plane) ((planes & 1u << CONIC_PLANE_##plane) != 0)
+
 /* Parts of values: pictures that --show names, planes of --aov, and what stands behind a colon. */
 static void note_parts(cli_render_job *job, const cli_scene_words *words) {
   const cli_accumulate_job *sums = &job->accumulating;
@@ -255,13 +258,16 @@ static void note_parts(cli_render_job *job, const cli_scene_words *words) {
       {job->legend_path != NULL, "show legend:OUT", {.on = F(VALUED), .apart = F(MAP)}},
       {job->has_legend, "show legend", {.apart = F(MAP)}}, /* which a warning says, where there is none */
       {job->has_mattes, "aov cryptomatte", {.on = CLI_SURFACES, .apart = F(MAP)}},
-      {(planes & CONIC_GAUSSIAN_PLANES) != 0,
-       "aov with the planes T, medianZ, inverseZ, last and doubt",
-       {.on = F(COMPOSITED)}},
-      {(planes & 1u << CONIC_PLANE_CLUSTER) != 0, "aov cluster", {.on = F(HYBRID)}},
-      {(planes & (1u << CONIC_PLANE_SAMPLES | 1u << CONIC_PLANE_VARIANCE)) != 0,
-       "aov with the planes samples and variance",
-       {.needs = F(ACCUMULATED)}},
+      {HAS(TRANSPARENCY), "aov T", {.on = F(COMPOSITED)}},
+      {HAS(MEDIAN_Z), "aov medianZ", {.on = F(COMPOSITED)}},
+      {HAS(INVERSE_Z), "aov inverseZ", {.on = F(COMPOSITED)}},
+      {HAS(LAST), "aov last", {.on = F(COMPOSITED)}},
+      {HAS(DOUBT), "aov doubt", {.on = F(COMPOSITED)}},
+      {HAS(CLUSTER), "aov cluster", {.on = F(HYBRID)}},
+      {HAS(ALBEDO) && planes != CONIC_DRAWN_PLANES, "aov albedo", {.on = CLI_SURFACES}},
+      {HAS(WEIGHT) && planes != CONIC_DRAWN_PLANES, "aov weight", {.on = CLI_SURFACES}},
+      {HAS(SAMPLES), "aov samples", {.needs = F(ACCUMULATED)}},
+      {HAS(VARIANCE), "aov variance", {.needs = F(ACCUMULATED)}},
       {words->is_quality_given && words->quality == CLI_QUALITY_DRAFT,
        "quality draft",
        {.apart = F(MAP), .why = "a map has one sample a pixel as it is"}},

@@ -164,6 +164,7 @@ conic_status cli_render_levels(cli_session *session, cli_render_job *job, conic_
                                conic_shot_outcome *outcome);
 /* Opening, and one picture, get what is left of the deadline. */
 void cli_deadline_open(cli_render_job *job);
+void cli_deadline_begin(cli_render_job *job);
 double cli_seconds_left(const cli_render_job *job); /* of the deadline; above 0 */
 conic_status cli_render_picture(cli_render_job *job, conic_image *image, conic_shot_outcome *outcome);
 

@@ -31,7 +31,7 @@ run 2 render knot.ply $picture --aov CryptoObject00 -o a.exr
 if "$conic" --version | grep -qE '^In this build:.*zstd'; then
   run 0 layer knot.ply -o knot.lpc
   run 2 render knot.lpc --size 64x48 --cryptomatte -o a.exr
-  grep -q 'not an .lpc' err || fail "$(cat err)"
+  grep -q 'not a cloud in levels' err || fail "$(cat err)"
 fi
 
 # Nothing else of the picture changes; an image beside it has none
