@@ -209,7 +209,7 @@ static void send_scene(conic_assimp_writer *w) {
 
 /* Listens to Assimp's messages for those that say that part of the file is left out, or may not be. */
 static void hear(const char *message, char *cookie) {
-  static const char *const told[] = {"drop", "nvalid", "incorrect", "unexpected", "empty", "unknown type: 3D/Objects/"};
+  static const char *const told[] = {"drop", "nvalid", "incorrect", "unexpected", "empty"};
   conic_assimp_writer *w = (conic_assimp_writer *)cookie;
   const char *text = strstr(message, ": ");
   if (strncmp(message, "Warn", 4) != 0 || !text)

@@ -1,6 +1,7 @@
 #include "core/assimp/assimp_read.h"
 #include "core/files/guard.h"
 
+#include "core/assimp/assimp_3mf.h"
 #include "core/assimp/assimp_kinds.h"
 #include "core/assimp/assimp_part.h"
 #include "core/base/machine.h"
@@ -69,13 +70,7 @@ static conic_status fail_as_told(assimp_reader *reader, const conic_assimp_recor
 
 static conic_status pass_note_on(assimp_reader *reader, const conic_assimp_record *record) {
   char text[LONGEST_TEXT];
-  const char *of_3mf = "Ignored file of unknown type: ";
   conic_status status = take_text(reader, record, text);
-  if (status == CONIC_OK && strncmp(text, of_3mf, strlen(of_3mf)) == 0 && conic_file_has_ending(text, "model"))
-    return conic_fail(reader->input->context, CONIC_ERROR_INPUT,
-                      "%s: a part is in %.100s, by 3MF's production extension, which is not read: save it without, or "
-                      "as OBJ",
-                      reader->input->name, text + strlen(of_3mf));
   if (status == CONIC_OK)
     conic_log(reader->input->context, CONIC_LOG_WARNING, "%s: %.200s", reader->input->name, text);
   return status;
@@ -167,6 +162,8 @@ conic_status conic_assimp_read(conic_input *input, conic_model_kind kind, const 
     return conic_fail(input->context, CONIC_ERROR_UNSUPPORTED, "%s: cannot read %s: %s", input->name,
                       conic_model_kind_name(kind), message);
   conic_status status = conic_input_take_rest(input, most_bytes, &file.bytes, &file.n_bytes);
+  if (status == CONIC_OK && kind == CONIC_MODEL_3MF)
+    status = conic_3mf_unpack(input->context, input->name, &file.bytes, &file.n_bytes);
   if (status == CONIC_OK)
     status = start_process(input, bridge, kind, options, &file, &process);
   conic_memory_release(input->context, file.bytes); /* the process has its own */

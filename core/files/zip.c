@@ -42,23 +42,38 @@ conic_status conic_zip_open(conic_context *context, const char *name, const unsi
 
 static const size_t none = (size_t)-1;
 
+/* How long the name of the entry at `at` is, and where the next one begins; 0: it is none. */
+static int measure_entry(const conic_zip *zip, size_t at, size_t *n_name, size_t *next) {
+  if (at > zip->n_bytes || zip->n_bytes - at < ENTRY || memcmp(zip->bytes + at, "PK\1\2", 4) != 0)
+    return 0;
+  const unsigned char *entry = zip->bytes + at;
+  *n_name = conic_load_16(entry + 28);
+  *next = at + ENTRY + *n_name + conic_load_16(entry + 30) + conic_load_16(entry + 32);
+  return *next <= zip->n_bytes;
+}
+
 /* Finds the entry of that file, or `none`; returns 0 where the list is spoiled. */
 static int find_entry(const conic_zip *zip, const char *file, size_t *found) {
-  size_t n_file = strlen(file), at = zip->directory;
-  for (size_t i = 0; i < zip->n_entries; i++) {
+  size_t n_file = strlen(file), n_name, at = zip->directory, next;
+  for (size_t i = 0; i < zip->n_entries; i++, at = next) {
     *found = at;
-    if (zip->n_bytes - at < ENTRY || memcmp(zip->bytes + at, "PK\1\2", 4) != 0)
+    if (!measure_entry(zip, at, &n_name, &next))
       return 0;
-    const unsigned char *entry = zip->bytes + at, *name = entry + ENTRY;
-    size_t n_name = conic_load_16(entry + 28), n_rest = n_name + conic_load_16(entry + 30) + conic_load_16(entry + 32);
-    if (zip->n_bytes - at - ENTRY < n_rest)
-      return 0;
+    const unsigned char *name = zip->bytes + at + ENTRY;
     if (n_name >= n_file && memcmp(name + n_name - n_file, file, n_file) == 0 &&
         (n_name == n_file || name[n_name - n_file - 1] == '/'))
       return 1;
-    at += ENTRY + n_rest;
   }
   *found = none;
+  return 1;
+}
+
+int conic_zip_next(const conic_zip *zip, size_t *at, char name[CONIC_ZIP_NAME]) {
+  size_t n_name, next, here = *at ? *at : zip->directory;
+  if (!measure_entry(zip, here, &n_name, &next))
+    return 0;
+  snprintf(name, CONIC_ZIP_NAME, "%.*s", (int)n_name, (const char *)zip->bytes + here + ENTRY);
+  *at = next;
   return 1;
 }
 
@@ -75,10 +90,10 @@ static size_t find_packed(const conic_zip *zip, size_t local, size_t n_packed) {
   return at <= zip->n_bytes && zip->n_bytes - at >= n_packed ? at : none;
 }
 
-static conic_status unpack_file(const conic_zip *zip, size_t entry_at, size_t packed, unsigned char *to,
-                                size_t n_bytes) {
+static conic_status unpack_file(const conic_zip *zip, size_t entry_at, size_t packed, size_t n_packed,
+                                unsigned char *to, size_t n_bytes) {
   const unsigned char *entry = zip->bytes + entry_at;
-  size_t n_packed = conic_load_32(entry + 20), n = n_packed;
+  size_t n = n_packed;
   if (conic_load_16(entry + 10) == STORED)
     memcpy(to, zip->bytes + packed, n_bytes < n_packed ? n_bytes : n_packed);
   else
@@ -86,6 +101,20 @@ static conic_status unpack_file(const conic_zip *zip, size_t entry_at, size_t pa
   return n == n_bytes && conic_zip_sum(to, n_bytes) == conic_load_32(entry + 16)
              ? CONIC_OK
              : zip_wrong(zip, "a file in it is not what its sum says", packed);
+}
+
+/* Takes the sizes and the place of what is packed from ZIP64's field, which has those that do not fit into an entry. */
+static void take_long(const unsigned char *entry, size_t *n_bytes, size_t *n_packed, size_t *local) {
+  const unsigned char *at = entry + ENTRY + conic_load_16(entry + 28), *end = at + conic_load_16(entry + 30);
+  size_t *const values[] = {n_bytes, n_packed, local};
+  while (end - at >= 4 && conic_load_16(at) != 1 && end - at >= 4 + conic_load_16(at + 2))
+    at += 4 + conic_load_16(at + 2);
+  at += 4;
+  for (int i = 0; i < 3; i++)
+    if (*values[i] == 0xffffffff && end - at >= 8) {
+      *values[i] = (size_t)conic_load_64(at);
+      at += 8;
+    }
 }
 
 conic_status conic_zip_read(const conic_zip *zip, const char *file, size_t most_bytes, unsigned char **contents,
@@ -100,7 +129,9 @@ conic_status conic_zip_read(const conic_zip *zip, const char *file, size_t most_
                       file, zip->directory);
   const unsigned char *entry = zip->bytes + at;
   size_t method = conic_load_16(entry + 10), n_packed = conic_load_32(entry + 20), n_bytes = conic_load_32(entry + 24);
-  size_t packed = find_packed(zip, conic_load_32(entry + 42), n_packed);
+  size_t local = conic_load_32(entry + 42);
+  take_long(entry, &n_bytes, &n_packed, &local);
+  size_t packed = find_packed(zip, local, n_packed);
   if (conic_load_16(entry + 8) & 1 || (method != STORED && method != DEFLATED))
     return zip_wrong(zip, "a file in it is encrypted, or packed in a way that is not known", at);
   if (method == DEFLATED && !conic_inflate_is_there())
@@ -112,7 +143,7 @@ conic_status conic_zip_read(const conic_zip *zip, const char *file, size_t most_
   *contents = conic_memory_allocate(zip->context, n_bytes + 1, 1);
   if (!*contents)
     return CONIC_ERROR_MEMORY;
-  conic_status status = unpack_file(zip, at, packed, *contents, n_bytes);
+  conic_status status = unpack_file(zip, at, packed, n_packed, *contents, n_bytes);
   if (status == CONIC_OK) {
     *n_contents = n_bytes;
     return CONIC_OK;

@@ -14,6 +14,12 @@ typedef struct conic_zip {
 conic_status conic_zip_open(conic_context *context, const char *name, const unsigned char *bytes, size_t n_bytes,
                             conic_zip *zip);
 
+enum { CONIC_ZIP_NAME = 128, CONIC_ZIP_MOST_FILES = 64 };
+
+/* Copies the name of the file at *at of the list, and moves *at to the next; 0: there is none. It begins at 0. A longer
+ * name is cut off. */
+int conic_zip_next(const conic_zip *zip, size_t *at, char name[CONIC_ZIP_NAME]);
+
 /* Whether the archive has a file of that name, in any folder. */
 int conic_zip_has(const conic_zip *zip, const char *file);
 
@@ -25,15 +31,13 @@ conic_status conic_zip_read(const conic_zip *zip, const char *file, size_t most_
 /* The CRC-32 of ZIP, gzip and PNG. */
 uint32_t conic_zip_sum(const unsigned char *bytes, size_t n);
 
-enum { CONIC_ZIP_MOST_FILES = 16 };
-
 /* An archive that is written to a stream from its start; begins as {.to = stream}. */
 typedef struct conic_zip_writer {
   FILE *to;
   uint32_t offset;
   int n_files, is_failed;
   struct {
-    char name[40];
+    char name[CONIC_ZIP_NAME];
     uint32_t sum, n_bytes, offset;
   } files[CONIC_ZIP_MOST_FILES];
 } conic_zip_writer;
