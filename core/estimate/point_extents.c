@@ -24,6 +24,13 @@
 #define ISOLATED_OUTLINE 0.5
 /* Without any neighbour only the unit gives a scale: pictures frame such a point as a sphere of radius 1. */
 #define LONE_OUTLINE 0.01
+/* The farther the neighbours are off the tangent plane, as a part of their distances, the less is there a surface to
+ * close: an outline reaches no farther than ROUGHNESS over that part, in the reach of a cell of the median spacing;
+ * this one at least. */
+#define ROUGHNESS 0.35
+#define LEAST_REACH 1.2
+/* The median is found of so many. */
+enum { MEDIAN_SAMPLES = 20000 };
 /* The density comes from the nearest few neighbours on the surface, and from all. */
 #define NEAREST_FEW 8
 
@@ -204,10 +211,29 @@ static void make_dot(conic_estimate *estimate, tangent_origin *p, size_t point, 
     memcpy(p->normal, outside, sizeof outside);
 }
 
+/* How far the neighbours are off the tangent plane, as a part of their distances, by the roots of mean squares. */
+static double roughness(const tangent_origin *p) {
+  double d[3], distance2, heights2 = 0.0, distances2 = 0.0;
+  for (size_t i = 0; i < p->neighbourhood->n_neighbours; i++) {
+    view_neighbour(p, p->list[i], d, &distance2);
+    double height = conic_dot(d, p->normal);
+    heights2 += height * height;
+    distances2 += distance2;
+  }
+  return sqrt(heights2 / distances2);
+}
+
+/* The reach as far as its roughness allows. */
+static double bounded_reach(const tangent_origin *p, double reach, double usual) {
+  double rough = roughness(p), most = usual * (rough * LEAST_REACH < ROUGHNESS ? ROUGHNESS / rough : LEAST_REACH);
+  return reach < most ? reach : most;
+}
+
 typedef struct spread_work {
   conic_estimate *estimate;
   const conic_neighbourhood *neighbourhood;
   const double *spacings;
+  double usual_reach; /* of a cell of the median spacing */
 } spread_work;
 
 static void spread_point(const spread_work *work, size_t point, size_t slot) {
@@ -224,6 +250,8 @@ static void spread_point(const spread_work *work, size_t point, size_t slot) {
   conic_point_state state = outline(&p, slot, work->spacings, u, v, &ellipse);
   if (estimate->rule == CONIC_ELLIPSE_BOUNDING && state == CONIC_POINT_SPREAD)
     ellipse = bound_neighbours(&p, u, v);
+  if (estimate->dot && state == CONIC_POINT_SPREAD && ellipse.reach > LEAST_REACH * work->usual_reach)
+    ellipse.reach = bounded_reach(&p, ellipse.reach, work->usual_reach);
   if (estimate->dot && state == CONIC_POINT_ISOLATED)
     estimate->dot[point] = 1.0f;
   else if (estimate->dot && work->neighbourhood->flags[slot] & CONIC_SLOT_SCATTERED) {
@@ -256,9 +284,29 @@ static void spread_duplicates(void *data, size_t begin, size_t end) {
       spread_point(work, point, work->neighbourhood->tree.slot_of_point[point]);
 }
 
+static conic_status find_usual_reach(conic_context *context, spread_work *work) {
+  const conic_neighbourhood *neighbourhood = work->neighbourhood;
+  size_t stride = 1 + neighbourhood->tree.n_slots / MEDIAN_SAMPLES, n = 0;
+  double *sorted = conic_memory_allocate(context, 2 * MEDIAN_SAMPLES, sizeof *sorted);
+  if (!sorted)
+    return CONIC_ERROR_MEMORY;
+  for (size_t slot = 0; slot < neighbourhood->tree.n_slots; slot += stride)
+    if (neighbourhood->flags[slot] & CONIC_SLOT_LISTED)
+      sorted[n++] = work->spacings[slot];
+  qsort(sorted, n, sizeof *sorted, conic_compare_doubles);
+  work->usual_reach = n ? CELL_RADIUS * sorted[n / 2] : HUGE_VAL;
+  conic_memory_release(context, sorted);
+  return CONIC_OK;
+}
+
 conic_status conic_estimate_from_neighbours(conic_context *context, conic_estimate *estimate,
                                             const conic_neighbourhood *neighbourhood, const double *spacings) {
-  spread_work work = {estimate, neighbourhood, spacings};
+  spread_work work = {estimate, neighbourhood, spacings, HUGE_VAL};
+  if (estimate->dot) {
+    conic_status found = find_usual_reach(context, &work);
+    if (found != CONIC_OK)
+      return found;
+  }
   const uint32_t *points = neighbourhood->tree.point_of_slot;
   conic_team_column columns[8] = {{estimate->states, sizeof *estimate->states, points},
                                   {estimate->dot, sizeof(float), points}};
