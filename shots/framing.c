@@ -14,18 +14,21 @@ void conic_shot_framing_init_sized(conic_shot_framing *framing, size_t size) {
   conic_options_give(framing, size, &own);
 }
 
-/* What lies flat shows more of itself from higher up. */
+/* What lies flat shows more of itself from higher up; so does a survey of points, unless it is rather a tower. */
 static double elevation_for(const conic_source_scale *scale, const double up[3]) {
   static const double flat_part = 0.33, flat_elevation_deg = 35.0, elevation_deg = 15.0;
-  double height = 0.0, ground = HUGE_VAL;
+  const int is_survey = scale->up_basis == CONIC_UP_KIND && scale->up[2] > 0.0 && !scale->n_triangles;
+  double height = 0.0, ground = HUGE_VAL, longest = 0.0;
   for (int axis = 0; axis < 3; axis++) {
     double extent = scale->maximum[axis] - scale->minimum[axis];
     if (up[axis] != 0.0)
       height = extent;
-    else
+    else {
       ground = extent < ground ? extent : ground;
+      longest = extent > longest ? extent : longest;
+    }
   }
-  return height > 0.0 && height < flat_part * ground ? flat_elevation_deg : elevation_deg;
+  return height > 0.0 && height < (is_survey ? longest : flat_part * ground) ? flat_elevation_deg : elevation_deg;
 }
 
 /* A pinhole so far off that what it frames is what parallel rays do. */

@@ -207,7 +207,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "the camera's place around the scene: 0 in front, 90 to the right of that [30]", -1e6, 1e6, .is_usual = 1,
        .acts = {.needs = CLI_FACT(FRAMED)}},
       {"elevation", CLI_NUMBER, &view->elevation_deg, "DEG",
-       "the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat]", -90, 90,
+       "the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat, and surveys]", -90, 90,
        .is_given = &job->is_elevation_given, .is_usual = 1, .acts = {.needs = CLI_FACT(FRAMED)}},
       {"fov", CLI_NUMBER, &view->fov_deg, "DEG", "field of view across the shorter side [40]", 0.001, 179.9,
        .acts = {.on = CLI_FACT(FRAMED), .needs = CLI_FACT(FIELD), .is_warned = 1}},

@@ -127,7 +127,7 @@ typedef struct conic_shot_framing {
   conic_framing framing; /* its up and elevation unless they are found */
   conic_camera_kind kind;
   int finds_up;        /* 1: the source's `up` is up */
-  int finds_elevation; /* 1: 35 degrees for a flat scene, 0 for a camera within the scene, else 15 */
+  int finds_elevation; /* 1: 35 degrees for a flat scene or a survey, 0 for a camera within it, else 15 */
   int is_plain;        /* 1: the sphere about the source's box is framed, without a look at the source */
   int has_eye; /* 1: the camera stands at `eye`; else where it sees all, or in the middle if it looks all around */
   double eye[3];

@@ -182,7 +182,8 @@ def render(
         ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
         from a corner
     azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
-    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat]
+    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat, and
+        surveys]
     fov: field of view across the shorter side [40]
     zoom: multiplies the focal length: 2 shows the middle, twice as large [1]
     projection: perspective, orthographic (parallel), fisheye, panorama (all around) or cube (six sides, one
@@ -368,7 +369,8 @@ def verify(
         ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
         from a corner
     azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
-    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat]
+    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat, and
+        surveys]
     fov: field of view across the shorter side [40]
     zoom: multiplies the focal length: 2 shows the middle, twice as large [1]
     projection: perspective, orthographic (parallel), fisheye, panorama (all around) or cube (six sides, one
@@ -572,7 +574,8 @@ def judge(
         ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
         from a corner
     azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
-    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat]
+    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat, and
+        surveys]
     fov: field of view across the shorter side [40]
     zoom: multiplies the focal length: 2 shows the middle, twice as large [1]
     projection: perspective, orthographic (parallel), fisheye, panorama (all around) or cube (six sides, one
@@ -753,7 +756,8 @@ def explain(
         ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
         from a corner
     azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
-    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat]
+    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat, and
+        surveys]
     fov: field of view across the shorter side [40]
     zoom: multiplies the focal length: 2 shows the middle, twice as large [1]
     projection: perspective, orthographic (parallel), fisheye, panorama (all around) or cube (six sides, one
@@ -1399,7 +1403,8 @@ def gradient(
         ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
         from a corner
     azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
-    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat]
+    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat, and
+        surveys]
     fov: field of view across the shorter side [40]
     zoom: multiplies the focal length: 2 shows the middle, twice as large [1]
     projection: perspective, orthographic (parallel), fisheye, panorama (all around) or cube (six sides, one

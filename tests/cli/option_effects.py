@@ -218,7 +218,7 @@ def write_las(path, n):
 
 def make_sources():
     need("make", "terrain", "-n", "400", "-o", "splats.ply")
-    write_las(pathlib.Path("raw.las"), 24)
+    write_las(pathlib.Path("raw.las"), 26)
     write_grid(pathlib.Path("mesh.obj"), 12, False)
     write_grid(pathlib.Path("textured.obj"), 8, True)
     pathlib.Path("grid.mtl").write_text("newmtl grid\nKd 1 1 1\nmap_Kd grid.png\n")
