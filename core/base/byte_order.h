@@ -79,6 +79,10 @@ static inline uint64_t conic_load_big_64(const void *from) {
   return __builtin_bswap64(conic_load_64(from));
 }
 
+static inline void conic_store_big_32(void *to, uint32_t bits) {
+  conic_store_32(to, __builtin_bswap32(bits));
+}
+
 static inline void conic_store_big_64(void *to, uint64_t bits) {
   conic_store_64(to, __builtin_bswap64(bits));
 }

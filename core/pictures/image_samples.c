@@ -3,32 +3,26 @@
 #include "core/base/base.h"
 #include "core/base/color.h"
 
-/* conic_srgb_code by one look-up and about one step: `first` holds the code at the lower end of each of N_STEPS equal
- * steps of linear light. The number of steps is a power of two, so that the step is found exactly. */
-enum { N_STEPS = 4096 };
-
-typedef struct sample_tables {
-  float thresholds[255];
-  uint8_t first[N_STEPS];
-  float decoded[256];
-} sample_tables;
+/* conic_srgb_code is one look-up and about one step. Their number is a power of two, so that the step is found exactly.
+ */
+enum { N_STEPS = sizeof((conic_samples_tables *)0)->first };
 
 typedef struct conversion {
   conic_samples_layout layout;
   size_t width;
   float *rgba;
   void *samples;
-  sample_tables tables;
+  conic_samples_tables tables;
 } conversion;
 
-static void fill_tables(sample_tables *tables) {
+void conic_samples_tables_fill(conic_samples_tables *tables) {
   conic_srgb_thresholds(tables->thresholds);
   conic_srgb_decode_table(tables->decoded);
   for (int i = 0; i < N_STEPS; i++)
     tables->first[i] = conic_srgb_code(tables->thresholds, (float)i * (1.0f / N_STEPS));
 }
 
-static uint8_t code_8(const sample_tables *tables, float linear) {
+static uint8_t code_8(const conic_samples_tables *tables, float linear) {
   if (!(linear > 0.0f))
     return 0;
   if (linear >= 1.0f)
@@ -56,32 +50,37 @@ static void arrange_pixel(const float rgba[4], int is_straight, float color[4]) 
     color[c] = alpha > 0.0f ? rgba[c] / alpha : 0.0f;
 }
 
-static void encode_row(void *data, size_t y) {
-  const conversion *work = data;
-  size_t n = (size_t)work->layout.n_channels, n_row = work->width * n;
-  const float *rgba = work->rgba + y * work->width * 4;
-  int has_curve = work->layout.tone != CONIC_TONE_SRGB && work->layout.sample_bytes < 4 && !work->layout.is_display;
-  for (size_t x = 0; x < work->width; x++) {
+void conic_samples_row_from_rgba(const conic_samples_tables *tables, conic_samples_layout layout, const float *rgba,
+                                 size_t width, void *samples) {
+  size_t n = (size_t)layout.n_channels;
+  int has_curve = layout.tone != CONIC_TONE_SRGB && layout.sample_bytes < 4 && !layout.is_display;
+  for (size_t x = 0; x < width; x++) {
     float color[4];
-    arrange_pixel(rgba + 4 * x, work->layout.is_straight, color);
+    arrange_pixel(rgba + 4 * x, layout.is_straight, color);
     if (has_curve)
-      conic_tone_map(work->layout.tone, color, color);
+      conic_tone_map(layout.tone, color, color);
     for (size_t c = 0; c < n; c++) {
-      size_t i = y * n_row + x * n + c;
-      if (work->layout.sample_bytes == 4)
-        ((float *)work->samples)[i] = color[c];
-      else if (work->layout.is_display && work->layout.sample_bytes == 2)
-        ((uint16_t *)work->samples)[i] = (uint16_t)quantize((double)color[c], 65535.0);
-      else if (work->layout.is_display)
-        ((uint8_t *)work->samples)[i] = (uint8_t)quantize((double)color[c], 255.0);
-      else if (work->layout.sample_bytes == 2)
-        ((uint16_t *)work->samples)[i] =
+      size_t i = x * n + c;
+      if (layout.sample_bytes == 4)
+        ((float *)samples)[i] = color[c];
+      else if (layout.is_display && layout.sample_bytes == 2)
+        ((uint16_t *)samples)[i] = (uint16_t)quantize((double)color[c], 65535.0);
+      else if (layout.is_display)
+        ((uint8_t *)samples)[i] = (uint8_t)quantize((double)color[c], 255.0);
+      else if (layout.sample_bytes == 2)
+        ((uint16_t *)samples)[i] =
             (uint16_t)quantize(c < 3 ? conic_srgb_encode((double)color[c]) : (double)color[c], 65535.0);
       else
-        ((uint8_t *)work->samples)[i] =
-            c < 3 ? code_8(&work->tables, color[c]) : (uint8_t)quantize((double)color[c], 255.0);
+        ((uint8_t *)samples)[i] = c < 3 ? code_8(tables, color[c]) : (uint8_t)quantize((double)color[c], 255.0);
     }
   }
+}
+
+static void encode_row(void *data, size_t y) {
+  const conversion *work = data;
+  size_t row_bytes = work->width * (size_t)work->layout.n_channels * (size_t)work->layout.sample_bytes;
+  conic_samples_row_from_rgba(&work->tables, work->layout, work->rgba + y * work->width * 4, work->width,
+                              (unsigned char *)work->samples + y * row_bytes);
 }
 
 static float decode_sample(const conversion *work, size_t i, int is_color) {
@@ -114,7 +113,7 @@ static void decode_row(void *data, size_t y) {
 void conic_samples_from_rgba(conic_context *context, const float *rgba, int width, int height,
                              conic_samples_layout layout, void *samples) {
   conversion work = {.layout = layout, .width = (size_t)width, .rgba = (float *)rgba, .samples = samples};
-  fill_tables(&work.tables);
+  conic_samples_tables_fill(&work.tables);
   conic_parallel_for(context, (size_t)height, encode_row, &work);
 }
 
@@ -122,6 +121,6 @@ void conic_samples_to_rgba(conic_context *context, const void *samples, int widt
                            conic_samples_layout layout, float *rgba) {
   conversion work = {.layout = layout, .width = (size_t)width, .samples = (void *)samples};
   work.rgba = rgba;
-  fill_tables(&work.tables);
+  conic_samples_tables_fill(&work.tables);
   conic_parallel_for(context, (size_t)height, decode_row, &work);
 }

@@ -21,6 +21,17 @@ static inline int conic_samples_have_alpha(conic_samples_layout layout) {
 void conic_samples_from_rgba(conic_context *context, const float *rgba, int width, int height,
                              conic_samples_layout layout, void *samples);
 
+/* One row of it, of 8 bits a code, by tables that are filled once. */
+typedef struct conic_samples_tables {
+  float thresholds[255]; /* of linear light, between the codes */
+  uint8_t first[4096];   /* the code at the lower end of each of so many equal steps of it */
+  float decoded[256];
+} conic_samples_tables;
+
+void conic_samples_tables_fill(conic_samples_tables *tables);
+void conic_samples_row_from_rgba(const conic_samples_tables *tables, conic_samples_layout layout, const float *rgba,
+                                 size_t width, void *samples);
+
 /* The reverse; missing alpha is 1. */
 void conic_samples_to_rgba(conic_context *context, const void *samples, int width, int height,
                            conic_samples_layout layout, float *rgba);

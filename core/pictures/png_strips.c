@@ -1,0 +1,181 @@
+#include "core/pictures/png_strips.h"
+
+#if CONIC_HAVE_PNG
+
+#include <zlib.h>
+
+#include "core/base/base.h"
+#include "core/base/byte_order.h"
+#include "core/pictures/image_samples.h"
+
+/* zlib's level: 1024² pixels of the lion take 12 ms so; all filters and level 6 make a file an eighth smaller in 64 ms,
+ * no filter a third larger in 14 ms. */
+enum { ZIP_LEVEL = 1, ZIP_MEMORY = 8 };
+
+/* Each strip starts to pack anew. So it has as many rows as fill so many bytes, but not so few that converting the one
+ * above it again would cost. */
+enum { STRIP_BYTES = 1 << 17, LEAST_ROWS = 16 };
+
+/* So many strips, in so many bytes, are packed before their bytes are written. */
+enum { STRIPS_A_THREAD = 4, ROUND_BYTES = 1 << 25 };
+
+enum { FILTER_UP = 2, LENGTH_AND_NAME = 8, SUM = 4 };
+
+/* What begins zlib's format: a window of 32 KiB, the fastest level. */
+static const unsigned char zlib_head[2] = {0x78, 0x01};
+
+/* A strip at work. Its memory serves one after the other. */
+typedef struct png_strip {
+  z_stream stream;
+  int has_stream;
+  unsigned char *rows[2];  /* codes of a row and of the one above */
+  unsigned char *filtered; /* all rows, each after its filter's number */
+  unsigned char *chunk;    /* length, name, what is packed, and sum */
+  size_t n_chunk;
+  uint32_t adler; /* of what is filtered */
+  int is_packed;
+} png_strip;
+
+typedef struct png_strips {
+  const conic_image *image;
+  conic_samples_layout layout;
+  conic_samples_tables tables;
+  size_t row_bytes, n_rows, n_strips, chunk_room; /* n_rows: of a strip, but the last */
+  size_t first;                                   /* the first of those at work */
+  png_strip *strips;
+} png_strips;
+
+/* Puts length, name and sum about n bytes that stand in their place; returns the bytes of the chunk. */
+static size_t close_chunk(unsigned char *chunk, size_t n) {
+  conic_store_big_32(chunk, (uint32_t)n);
+  memcpy(chunk + 4, "IDAT", 4);
+  conic_store_big_32(chunk + LENGTH_AND_NAME + n, (uint32_t)crc32(0, chunk + 4, (uInt)(n + 4)));
+  return LENGTH_AND_NAME + n + SUM;
+}
+
+static size_t rows_of(const png_strips *s, size_t i_strip) {
+  size_t height = (size_t)s->image->height, first = i_strip * s->n_rows;
+  return height - first < s->n_rows ? height - first : s->n_rows;
+}
+
+static void convert_row(const png_strips *s, size_t y, unsigned char *to) {
+  const float *rgba = s->image->planes[CONIC_PLANE_RGBA];
+  size_t width = (size_t)s->image->width;
+  conic_samples_row_from_rgba(&s->tables, s->layout, rgba + 4 * width * y, width, to);
+}
+
+static void filter_strip(const png_strips *s, size_t i_strip, png_strip *strip) {
+  size_t first = i_strip * s->n_rows, n_rows = rows_of(s, i_strip);
+  unsigned char *above = strip->rows[0], *row = strip->rows[1], *to = strip->filtered;
+  if (first > 0)
+    convert_row(s, first - 1, above);
+  else
+    memset(above, 0, s->row_bytes);
+  for (size_t y = 0; y < n_rows; y++) {
+    convert_row(s, first + y, row);
+    *to++ = FILTER_UP;
+    for (size_t i = 0; i < s->row_bytes; i++)
+      to[i] = (unsigned char)(row[i] - above[i]);
+    to += s->row_bytes;
+    unsigned char *done = above;
+    above = row;
+    row = done;
+  }
+}
+
+/* All but the last end with an empty block, so that the next begins with a byte. */
+static void pack_strip(void *data, size_t i) {
+  png_strips *s = data;
+  png_strip *strip = &s->strips[i];
+  size_t i_strip = s->first + i, n_bytes = rows_of(s, i_strip) * (s->row_bytes + 1), n_head = 0;
+  int is_last = i_strip + 1 == s->n_strips;
+  filter_strip(s, i_strip, strip);
+  strip->adler = (uint32_t)adler32(1, strip->filtered, (uInt)n_bytes);
+  if (i_strip == 0) {
+    memcpy(strip->chunk + LENGTH_AND_NAME, zlib_head, sizeof zlib_head);
+    n_head = sizeof zlib_head;
+  }
+  strip->stream.next_in = strip->filtered;
+  strip->stream.avail_in = (uInt)n_bytes;
+  strip->stream.next_out = strip->chunk + LENGTH_AND_NAME + n_head;
+  strip->stream.avail_out = (uInt)(s->chunk_room - LENGTH_AND_NAME - n_head - SUM);
+  strip->is_packed = deflateReset(&strip->stream) == Z_OK &&
+                     deflate(&strip->stream, is_last ? Z_FINISH : Z_SYNC_FLUSH) == (is_last ? Z_STREAM_END : Z_OK) &&
+                     strip->stream.avail_in == 0 && strip->stream.avail_out > 0;
+  strip->n_chunk = close_chunk(strip->chunk, n_head + strip->stream.total_out);
+}
+
+/* Packs the next n strips and writes them. */
+static conic_status write_round(conic_context *context, png_strips *s, size_t n, FILE *to, uLong *adler) {
+  conic_parallel_for(context, n, pack_strip, s);
+  for (size_t i = 0; i < n; i++) {
+    const png_strip *strip = &s->strips[i];
+    size_t n_bytes = rows_of(s, s->first + i) * (s->row_bytes + 1);
+    if (!strip->is_packed)
+      return conic_fail(context, CONIC_ERROR_MEMORY, "zlib packs no PNG");
+    *adler = adler32_combine(*adler, strip->adler, (z_off_t)n_bytes);
+    fwrite(strip->chunk, 1, strip->n_chunk, to);
+  }
+  s->first += n;
+  return CONIC_OK;
+}
+
+static conic_status open_strips(conic_context *context, png_strips *s, size_t n) {
+  conic_status status = conic_memory_allocate_these(context, CONIC_ZEROED(s->strips, n));
+  size_t filtered_bytes = s->n_rows * (s->row_bytes + 1);
+  for (size_t i = 0; i < n && status == CONIC_OK; i++) {
+    png_strip *strip = &s->strips[i];
+    strip->has_stream = deflateInit2(&strip->stream, ZIP_LEVEL, Z_DEFLATED, -MAX_WBITS, ZIP_MEMORY, Z_FILTERED) == Z_OK;
+    if (!strip->has_stream)
+      return CONIC_ERROR_MEMORY;
+    s->chunk_room = deflateBound(&strip->stream, (uLong)filtered_bytes) + 64; /* and what stands about it */
+    status = conic_memory_allocate_these(
+        context, CONIC_ROOM(strip->rows[0], s->row_bytes), CONIC_ROOM(strip->rows[1], s->row_bytes),
+        CONIC_ROOM(strip->filtered, filtered_bytes), CONIC_ROOM(strip->chunk, s->chunk_room));
+  }
+  return status;
+}
+
+static void close_strips(conic_context *context, png_strips *s, size_t n) {
+  for (size_t i = 0; s->strips && i < n; i++) {
+    png_strip *strip = &s->strips[i];
+    if (strip->has_stream)
+      deflateEnd(&strip->stream);
+    conic_memory_release_these(context, strip->rows[0], strip->rows[1], strip->filtered, strip->chunk);
+  }
+  conic_memory_release(context, s->strips);
+}
+
+conic_status conic_png_write_strips(conic_context *context, const conic_image *image, conic_tone tone, FILE *to) {
+  png_strips s = {
+      .image = image,
+      .layout = {
+          .n_channels = 4, .sample_bytes = 1, .is_straight = 1, .is_display = image->is_display != 0, .tone = tone}};
+  unsigned char end[LENGTH_AND_NAME + 4 + SUM];
+  uLong adler = 1;
+  s.row_bytes = 4 * (size_t)image->width;
+  s.n_rows = STRIP_BYTES / (s.row_bytes + 1) + 1;
+  s.n_rows = s.n_rows > LEAST_ROWS ? s.n_rows : LEAST_ROWS;
+  s.n_rows = s.n_rows < (size_t)image->height ? s.n_rows : (size_t)image->height;
+  s.n_strips = ((size_t)image->height + s.n_rows - 1) / s.n_rows;
+  size_t n_a_round = STRIPS_A_THREAD * (size_t)conic_context_threads(context);
+  size_t most = ROUND_BYTES / (s.n_rows * (s.row_bytes + 1)) + 1;
+  n_a_round = n_a_round < most ? n_a_round : most;
+  n_a_round = n_a_round < s.n_strips ? n_a_round : s.n_strips;
+  conic_samples_tables_fill(&s.tables);
+  conic_status status = open_strips(context, &s, n_a_round);
+  while (status == CONIC_OK && s.first < s.n_strips) {
+    size_t left = s.n_strips - s.first;
+    status = conic_progress(context, "write", (double)s.first / (double)s.n_strips);
+    if (status == CONIC_OK)
+      status = write_round(context, &s, left < n_a_round ? left : n_a_round, to, &adler);
+  }
+  if (status == CONIC_OK) { /* which is known last, in a chunk of its own */
+    conic_store_big_32(end + LENGTH_AND_NAME, (uint32_t)adler);
+    fwrite(end, 1, close_chunk(end, 4), to);
+  }
+  close_strips(context, &s, n_a_round);
+  return status;
+}
+
+#endif
