@@ -22,6 +22,17 @@ else()
   set(ZLIB_FOUND FALSE)
 endif()
 
+if(CONIC_WITH_LIBDEFLATE) # which has no CMake package in Debian
+  find_library(LIBDEFLATE_LIBRARY deflate)
+  find_path(LIBDEFLATE_INCLUDE_FOLDER libdeflate.h)
+  mark_as_advanced(LIBDEFLATE_LIBRARY LIBDEFLATE_INCLUDE_FOLDER)
+endif()
+if(CONIC_WITH_LIBDEFLATE AND LIBDEFLATE_LIBRARY AND LIBDEFLATE_INCLUDE_FOLDER)
+  set(LIBDEFLATE_FOUND TRUE)
+else()
+  set(LIBDEFLATE_FOUND FALSE)
+endif()
+
 if(CONIC_WITH_OPENIMAGEIO AND NOT WIN32) # where no module is loaded, as in core/base/module_windows.c
   if(NOT CMAKE_CXX_COMPILER)
     unset(CMAKE_CXX_COMPILER CACHE) # one may have been installed since the last look
@@ -73,7 +84,7 @@ else()
   set(OpenCL_FOUND FALSE)
 endif()
 
-if(CONIC_WITH_ZSTD) # which has no CMake package in Debian
+if(CONIC_WITH_ZSTD) # likewise
   find_library(ZSTD_LIBRARY zstd)
   find_path(ZSTD_INCLUDE_FOLDER zstd.h)
   mark_as_advanced(ZSTD_LIBRARY ZSTD_INCLUDE_FOLDER)
@@ -128,6 +139,7 @@ endif()
 set(found_openexr ${OpenEXR_FOUND})
 set(found_png ${PNG_FOUND})
 set(found_zlib ${ZLIB_FOUND})
+set(found_libdeflate ${LIBDEFLATE_FOUND})
 set(found_openimageio ${OpenImageIO_FOUND})
 set(found_assimp ${assimp_FOUND})
 set(found_draco ${DRACO_FOUND})
@@ -141,6 +153,7 @@ set(found_xml ${LIBXML2_FOUND})
 set(found_mpi ${MPI_C_FOUND})
 foreach(dependency "openexr:OpenEXR (EXR images)" "png:libpng (PNG images)"
         "zlib:zlib (compressed deep images, Gaussian scenes in .spz)"
+        "libdeflate:libdeflate (EXR images packed faster)"
         "openimageio:OpenImageIO (TIFF, JPEG … images, and PNG without libpng)"
         "assimp:Assimp (3MF, DAE, FBX … meshes)" "draco:libdraco (glTF packed by Draco)"
         "meshoptimizer:libmeshoptimizer (glTF packed by meshopt)" "opencl:OpenCL (other devices)"

@@ -20,6 +20,9 @@ const char *conic_version(void) {
 #ifndef CONIC_HAVE_ZLIB
 #define CONIC_HAVE_ZLIB 0
 #endif
+#ifndef CONIC_HAVE_LIBDEFLATE
+#define CONIC_HAVE_LIBDEFLATE 0
+#endif
 #ifndef CONIC_HAVE_OPENCL
 #define CONIC_HAVE_OPENCL 0
 #endif
@@ -56,6 +59,7 @@ static const conic_feature features[] = {
     {"libxml2", CONIC_HAVE_XML},
     {"Draco", 1},
     {"meshoptimizer", CONIC_HAVE_MESHOPTIMIZER},
+    {"libdeflate", CONIC_HAVE_LIBDEFLATE},
 };
 static const conic_feature without_openimageio = {"OpenImageIO", 0}, without_assimp = {"Assimp", 0};
 static const conic_feature without_draco = {"Draco", 0};

@@ -12,6 +12,7 @@
 #include "cli/render/units.h"
 #include "cli/scene/stereo.h"
 #include "core/base/radix.h"
+#include "core/base/threads.h"
 #include "source/lean_drawing.h"
 
 CONIC_DEFINE_ORDER(compare_frames, conic_render_statistics, ms.frame)
@@ -230,12 +231,22 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
   return status;
 }
 
+typedef struct plane_hashes {
+  const conic_image *image;
+  uint64_t *hashes;
+} plane_hashes;
+
+static void hash_plane(void *data, size_t i) {
+  const plane_hashes *work = data;
+  work->hashes[i] = conic_image_hash(work->image, (conic_plane)i);
+}
+
 /* Only where they are reported: it takes a while. */
 static void hash_image(const cli_session *session, cli_render_job *job, const conic_image *image) {
   double start = cli_seconds();
   int is_hashed = job->banded_planes || session->host; /* row by row; a host has the planes */
-  for (int i = 0; i < CONIC_N_PLANES && session->json_path && !is_hashed; i++)
-    job->hashes[i] = conic_image_hash(image, (conic_plane)i);
+  if (session->json_path && !is_hashed)
+    conic_parallel_for(session->context, CONIC_N_PLANES, hash_plane, (&(plane_hashes){image, job->hashes}));
   job->hash_ms = 1e3 * (cli_seconds() - start);
 }
 

@@ -7,7 +7,7 @@
 #include "core/files/file.h"
 #include "core/pictures/image_exr_stream.h"
 
-#if CONIC_HAVE_ZLIB
+#if CONIC_HAVE_ZLIB || CONIC_HAVE_LIBDEFLATE
 static const exr_compression_t compression = EXR_COMPRESSION_ZIPS;
 #else
 static const exr_compression_t compression = EXR_COMPRESSION_NONE;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "conic/image.h"
+#include "core/files/deflate.h"
 
 typedef struct conic_deep_sample {
   float rgba[4]; /* premultiplied */
@@ -21,6 +22,7 @@ typedef struct conic_deep_packed {
   unsigned char *ends, *samples, *scratch;
   size_t n_ends, n_samples, n_unpacked; /* bytes */
   size_t ends_room, samples_room, scratch_room;
+  conic_deflater deflater;
 } conic_deep_packed;
 
 typedef struct conic_deep_writer conic_deep_writer;

@@ -5,13 +5,6 @@
 #include "core/base/byte_order.h"
 #include "core/pictures/image_exr_deep.h"
 
-#if CONIC_HAVE_ZLIB
-#include <zlib.h>
-
-/* For pictures of splats, higher levels take twice as long for files that are 3 % smaller. */
-enum { ZIP_LEVEL = 2 };
-#endif
-
 /* Where a sample's channels are, in the order of their names: A, B, G, R, Z, id, weight. */
 static const size_t channels[] = {offsetof(conic_deep_sample, rgba) + 3 * sizeof(float),
                                   offsetof(conic_deep_sample, rgba) + 2 * sizeof(float),
@@ -22,55 +15,30 @@ static const size_t channels[] = {offsetof(conic_deep_sample, rgba) + 3 * sizeof
                                   offsetof(conic_deep_sample, weight)};
 enum { N_CHANNELS = sizeof channels / sizeof channels[0] };
 
-/* Makes room for n bytes, and for zlib's overhead if they cannot be compressed. */
+/* Makes room for n bytes. */
 static int make_room(conic_context *context, unsigned char **bytes, size_t *room, size_t n) {
   if (*bytes && n <= *room)
     return 1;
   conic_memory_release(context, *bytes);
-  *room = n + n / 2 + 64;
+  *room = n + n / 2;
   *bytes = conic_memory_allocate(context, *room, 1);
   if (!*bytes)
     *room = 0;
   return *bytes != NULL;
 }
 
-#if CONIC_HAVE_ZLIB
-
-/* Arranges bytes as ZIPS compresses them: even bytes first, then odd ones, each as its difference from the one
- * before. */
-static void rearrange(const unsigned char *bytes, size_t n, unsigned char *to) {
-  unsigned char before = 0;
-  for (size_t i = 0; i < n; i++)
-    to[i / 2 + (i % 2 ? (n + 1) / 2 : 0)] = bytes[i];
-  for (size_t i = 0; i < n; i++) {
-    unsigned char here = to[i];
-    to[i] = (unsigned char)(i ? here - before + 128 : here);
-    before = here;
-  }
-}
-
 /* Bytes that do not become fewer stay as they are. */
 static int compress_bytes(conic_context *context, conic_deep_packed *packed, unsigned char *bytes, size_t *n) {
-  uLongf n_smaller = compressBound((uLong)*n);
-  if (!make_room(context, &packed->scratch, &packed->scratch_room, *n + n_smaller))
+  if (!make_room(context, &packed->scratch, &packed->scratch_room, 2 * *n))
     return 0;
   unsigned char *smaller = packed->scratch + *n;
-  rearrange(bytes, *n, packed->scratch);
-  if (compress2(smaller, &n_smaller, packed->scratch, (uLong)*n, ZIP_LEVEL) != Z_OK || n_smaller >= *n)
+  size_t n_smaller = conic_deflate_exr(&packed->deflater, bytes, *n, packed->scratch, smaller, *n);
+  if (n_smaller == 0 || n_smaller == *n)
     return 1;
   memcpy(bytes, smaller, n_smaller);
   *n = n_smaller;
   return 1;
 }
-
-#else
-
-static int compress_bytes(conic_context *context, conic_deep_packed *packed, unsigned char *bytes, size_t *n) {
-  (void)context, (void)packed, (void)bytes, (void)n;
-  return 1;
-}
-
-#endif
 
 conic_status conic_deep_pack(conic_context *context, const conic_deep_line *line, int width,
                              conic_deep_packed *packed) {
@@ -99,4 +67,5 @@ conic_status conic_deep_pack(conic_context *context, const conic_deep_line *line
 
 void conic_deep_packed_release(conic_context *context, conic_deep_packed *packed) {
   conic_memory_release_these(context, packed->ends, packed->samples, packed->scratch);
+  conic_deflater_end(&packed->deflater);
 }

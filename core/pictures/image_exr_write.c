@@ -5,6 +5,7 @@
 
 #if CONIC_HAVE_OPENEXR
 
+#include "core/files/deflate.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/image/image_common.h"
@@ -23,6 +24,10 @@ typedef struct exr_chunk {
   exr_encode_pipeline_t pipeline; /* its buffers serve chunk after chunk */
   exr_chunk_info_t info;
   exr_result_t result;
+  conic_context *context;  /* of libdeflate's work … */
+  conic_deflater deflater; /* … and what packs, */
+  unsigned char *packed;   /* with room for the pixels, twice */
+  size_t packed_room;
 } exr_chunk;
 
 struct conic_exr_bands {
@@ -131,6 +136,45 @@ static void point_channels(const conic_exr_bands *bands, exr_encode_pipeline_t *
   }
 }
 
+#if CONIC_HAVE_LIBDEFLATE
+
+/* Packs by libdeflate in place of OpenEXR's zlib. Pixels that do not become fewer bytes stay as they are. */
+static exr_result_t pack_zip(exr_encode_pipeline_t *pipeline) {
+  exr_chunk *chunk = pipeline->encoding_user_data;
+  size_t n = (size_t)pipeline->packed_bytes;
+  if (chunk->packed_room < 2 * n) {
+    conic_memory_release(chunk->context, chunk->packed);
+    chunk->packed = conic_memory_allocate(chunk->context, 2 * n, 1);
+    chunk->packed_room = chunk->packed ? 2 * n : 0;
+  }
+  if (!chunk->packed)
+    return EXR_ERR_OUT_OF_MEMORY;
+  unsigned char *smaller = chunk->packed + n;
+  size_t n_smaller = conic_deflate_exr(&chunk->deflater, pipeline->packed_buffer, n, chunk->packed, smaller, n);
+  if (n_smaller == 0)
+    memcpy(smaller, pipeline->packed_buffer, n);
+  pipeline->compressed_buffer = smaller;
+  pipeline->compressed_bytes = n_smaller ? n_smaller : n;
+  return EXR_ERR_SUCCESS;
+}
+
+static void pack_by_libdeflate(const conic_exr_bands *bands, exr_chunk *chunk) {
+  conic_compression compression = bands->options.compression;
+  if (compression != CONIC_COMPRESSION_ZIP && compression != CONIC_COMPRESSION_ZIPS)
+    return;
+  chunk->context = bands->context;
+  chunk->pipeline.encoding_user_data = chunk;
+  chunk->pipeline.compress_fn = pack_zip;
+}
+
+#else
+
+static void pack_by_libdeflate(const conic_exr_bands *bands, exr_chunk *chunk) {
+  (void)bands, (void)chunk;
+}
+
+#endif
+
 static void encode_chunk(void *data, size_t i_item) {
   conic_exr_bands *bands = data;
   exr_chunk *chunk = &bands->chunks[i_item];
@@ -144,6 +188,7 @@ static void encode_chunk(void *data, size_t i_item) {
   point_channels(bands, &chunk->pipeline);
   if (is_new)
     chunk->result = exr_encoding_choose_default_routines(bands->file, 0, &chunk->pipeline);
+  pack_by_libdeflate(bands, chunk);
   chunk->pipeline.yield_until_ready_fn = NULL;
   chunk->pipeline.write_fn = NULL;
   if (chunk->result == EXR_ERR_SUCCESS)
@@ -318,9 +363,13 @@ static conic_status copy_spool(conic_exr_bands *bands) {
 }
 
 static conic_status finish_file(conic_exr_bands *bands, conic_status status) {
-  for (size_t i = 0; bands->chunks && i < bands->n_chunks; i++)
-    if (bands->chunks[i].pipeline.context)
-      exr_encoding_destroy(bands->file, &bands->chunks[i].pipeline);
+  for (size_t i = 0; bands->chunks && i < bands->n_chunks; i++) {
+    exr_chunk *chunk = &bands->chunks[i];
+    if (chunk->pipeline.context)
+      exr_encoding_destroy(bands->file, &chunk->pipeline);
+    conic_deflater_end(&chunk->deflater);
+    conic_memory_release(bands->context, chunk->packed);
+  }
   exr_result_t result = bands->file ? exr_finish(&bands->file) : EXR_ERR_SUCCESS;
   if (!bands->output)
     return status;

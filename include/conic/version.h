@@ -17,7 +17,7 @@ CONIC_API const char *conic_version(void);
  * OpenImageIO and Assimp also need the module that leads to them. */
 typedef struct conic_feature {
   const char *name; /* "OpenEXR", "OpenImageIO", "OpenCL", "zstd", "CURL", "libpng", "Assimp", "zlib", "libwebp",
-                       "libxml2" */
+                       "libxml2", "libdeflate" */
   int available;
 } conic_feature;
 

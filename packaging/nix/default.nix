@@ -11,6 +11,7 @@ pkgs.stdenv.mkDerivation {
     assimp
     brotli
     curl
+    libdeflate
     libpng
     libwebp
     libxml2

@@ -83,10 +83,21 @@ static void test_kinds(conic_context *context) {
   CHECK(n_read > 300);
 }
 
-/* What is written has the samples that OpenImageIO would write, and straight alpha. */
-static void test_written(conic_context *context) {
-  conic_image image = random_image(context, 61, 47, 1u << CONIC_PLANE_RGBA), back, other;
+/* What is written has the samples that OpenImageIO would write, and straight alpha; and the same bytes by any number of
+ * threads, though the picture has several strips. */
+static void test_written(conic_context *context, int height) {
+  conic_image image = random_image(context, 301, height, 1u << CONIC_PLANE_RGBA), back, other;
+  conic_context *alone = check_context(1);
+  unsigned char *bytes[2];
+  size_t n_bytes[2];
+  CHECK_OK(conic_image_write(alone, in_folder("b.png"), &image));
   CHECK_OK(conic_image_write(context, in_folder("a.png"), &image));
+  for (int i = 0; i < 2; i++)
+    bytes[i] = read_bytes(in_folder(i ? "b.png" : "a.png"), &n_bytes[i]);
+  CHECK(n_bytes[0] == n_bytes[1] && memcmp(bytes[0], bytes[1], n_bytes[0]) == 0);
+  free(bytes[0]);
+  free(bytes[1]);
+  conic_context_destroy(alone);
   CHECK_OK(conic_image_read(context, in_folder("a.png"), &back));
   if (has_feature("OpenImageIO")) {
     CHECK_OK(conic_foreign_write(context, in_folder("b.png"), "png", &image, CONIC_TONE_SRGB));
@@ -136,7 +147,8 @@ int main(void) {
   }
   open_test_folder();
   test_kinds(context);
-  test_written(context);
+  test_written(context, 47);
+  test_written(context, 331);
   test_unsound(context);
   close_test_folder();
   conic_context_destroy(context);
