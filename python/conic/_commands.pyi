@@ -76,6 +76,7 @@ def render(
     color_by: Optional[PathLike] = None,
     ramp: Optional[Union[str, float, Sequence[float]]] = None,
     where: Optional[PathLike] = None,
+    place: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     error: Optional[float] = None,
     budget: Optional[Union[int, str]] = None,
     cache: Optional[PathLike] = None,
@@ -205,6 +206,8 @@ def render(
         percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
+    place: where an input stands: a shift of 3 numbers, or 12 or 16 of a matrix, row by row, that turns, scales
+        evenly and shifts [as the file has it]
     error: draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a
         .chy, also by how many steps colours may differ: black and white do by 100, and 2 are just visible [0:2]
     budget: draw N splats and triangles at most, those whose error is the least [all]
@@ -305,6 +308,7 @@ def verify(
     color_by: Optional[PathLike] = None,
     ramp: Optional[Union[str, float, Sequence[float]]] = None,
     where: Optional[PathLike] = None,
+    place: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     error: Optional[float] = None,
     budget: Optional[Union[int, str]] = None,
     cache: Optional[PathLike] = None,
@@ -392,6 +396,8 @@ def verify(
         percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
+    place: where an input stands: a shift of 3 numbers, or 12 or 16 of a matrix, row by row, that turns, scales
+        evenly and shifts [as the file has it]
     error: draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a
         .chy, also by how many steps colours may differ: black and white do by 100, and 2 are just visible [0:2]
     budget: draw N splats and triangles at most, those whose error is the least [all]
@@ -501,6 +507,7 @@ def judge(
     color_by: Optional[PathLike] = None,
     ramp: Optional[Union[str, float, Sequence[float]]] = None,
     where: Optional[PathLike] = None,
+    place: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     error: Optional[float] = None,
     budget: Optional[Union[int, str]] = None,
     cache: Optional[PathLike] = None,
@@ -597,6 +604,8 @@ def judge(
         percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
+    place: where an input stands: a shift of 3 numbers, or 12 or 16 of a matrix, row by row, that turns, scales
+        evenly and shifts [as the file has it]
     error: draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a
         .chy, also by how many steps colours may differ: black and white do by 100, and 2 are just visible [0:2]
     budget: draw N splats and triangles at most, those whose error is the least [all]
@@ -696,6 +705,7 @@ def explain(
     color_by: Optional[PathLike] = None,
     ramp: Optional[Union[str, float, Sequence[float]]] = None,
     where: Optional[PathLike] = None,
+    place: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     error: Optional[float] = None,
     budget: Optional[Union[int, str]] = None,
     cache: Optional[PathLike] = None,
@@ -779,6 +789,8 @@ def explain(
         percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
+    place: where an input stands: a shift of 3 numbers, or 12 or 16 of a matrix, row by row, that turns, scales
+        evenly and shifts [as the file has it]
     error: draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a
         .chy, also by how many steps colours may differ: black and white do by 100, and 2 are just visible [0:2]
     budget: draw N splats and triangles at most, those whose error is the least [all]
@@ -1350,6 +1362,7 @@ def gradient(
     color_by: Optional[PathLike] = None,
     ramp: Optional[Union[str, float, Sequence[float]]] = None,
     where: Optional[PathLike] = None,
+    place: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     error: Optional[float] = None,
     budget: Optional[Union[int, str]] = None,
     cache: Optional[PathLike] = None,
@@ -1426,6 +1439,8 @@ def gradient(
         percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
+    place: where an input stands: a shift of 3 numbers, or 12 or 16 of a matrix, row by row, that turns, scales
+        evenly and shifts [as the file has it]
     error: draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a
         .chy, also by how many steps colours may differ: black and white do by 100, and 2 are just visible [0:2]
     budget: draw N splats and triangles at most, those whose error is the least [all]

@@ -1,0 +1,282 @@
+/* Gaussians among surfaces: by closed forms, by the oracle, and to the bit by every way of drawing them. */
+#include "conic/gaussian_judge.h"
+#include "conic/loan.h"
+#include "conic/shot.h"
+#include "core/base/color.h"
+#include "core/lanes/instruction_sets.h"
+#include "source/surfaces_among.h"
+#include "tests/support/check.h"
+
+enum { SIDE = 48, PIXELS = SIDE * SIDE, MIDDLE = SIDE / 2 * SIDE + SIDE / 2 };
+
+static const unsigned planes = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_NORMAL |
+                               1u << CONIC_PLANE_COUNT | 1u << CONIC_PLANE_ID | 1u << CONIC_PLANE_TRANSPARENCY |
+                               1u << CONIC_PLANE_MEDIAN_Z | 1u << CONIC_PLANE_INVERSE_Z | 1u << CONIC_PLANE_LAST;
+
+/* Balls of one deviation along the z axis, whose colours are display values. */
+static conic_gaussians balls(conic_context *context, size_t n, double first_z, double step, float opacity) {
+  conic_gaussians set;
+  CHECK_OK(conic_gaussians_allocate(context, n, 0, 0, &set));
+  for (size_t i = 0; i < n; i++) {
+    for (int axis = 0; axis < 3; axis++) {
+      set.position[axis][i] = axis == 2 ? (float)(first_z + step * (double)i) : 0.0f;
+      set.scale[axis][i] = 0.3f;
+      set.sh[3 * i + (size_t)axis] = (float)((0.2 + 0.25 * axis - 0.5) / 0.28209479177387814);
+    }
+    for (int k = 0; k < 4; k++)
+      set.rotation[k][i] = k == 0;
+    set.opacity[i] = opacity;
+  }
+  return set;
+}
+
+/* A wide square at z + slope·x, grey as linear light. */
+static conic_triangles wall(conic_context *context, double z, double slope, float grey) {
+  static const uint32_t corners[2][3] = {{0, 2, 1}, {1, 2, 3}};
+  conic_triangles set;
+  CHECK_OK(conic_triangles_allocate(context, 2, 4, CONIC_TRIANGLES_COLORS, &set));
+  memcpy(set.corners, corners, sizeof corners);
+  for (size_t i = 0; i < 4; i++) {
+    const float x = i & 1 ? 9.0f : -9.0f, y = i & 2 ? 9.0f : -9.0f;
+    const float at[3] = {x, y, (float)(z + slope * (double)x)};
+    for (int axis = 0; axis < 3; axis++) {
+      set.position[axis][i] = at[axis];
+      set.color[axis][i] = grey;
+    }
+  }
+  return set;
+}
+
+static conic_source *open_scene(conic_context *context, const char *const *names, size_t n, const char *place) {
+  conic_gaussian_options composited;
+  conic_source_options options;
+  conic_source *source;
+  conic_gaussian_options_init(&composited);
+  conic_source_options_init(&options);
+  options.gaussians = &composited;
+  options.as = CONIC_AS_AUTO;
+  options.place = place;
+  CHECK_OK(conic_source_open(context, names, n, &options, &source));
+  return source;
+}
+
+static conic_shot shot_of(conic_gaussian_profile profile) {
+  conic_shot shot;
+  conic_shot_init(&shot);
+  shot.camera = (conic_camera){.width = SIDE, .height = SIDE, .cx = 0.5 * SIDE, .cy = 0.5 * SIDE, .fx = 40, .fy = 40};
+  for (int axis = 0; axis < 3; axis++)
+    shot.camera.cam_from_world[axis][axis] = 1.0;
+  shot.render.shading = CONIC_SHADE_NONE;
+  shot.gaussians.profile = profile;
+  shot.planes = planes;
+  return shot;
+}
+
+static conic_image draw(conic_context *context, conic_source *source, const conic_shot *shot) {
+  conic_image image;
+  conic_renderer *renderer;
+  CHECK_OK(conic_renderer_create(context, &renderer));
+  CHECK_OK(conic_image_allocate(context, shot->camera.width, shot->camera.height, shot->planes, &image));
+  CHECK_OK(conic_shot_draw(source, renderer, shot, &image, NULL));
+  conic_renderer_destroy(renderer);
+  return image;
+}
+
+static const float *pixel_of(const conic_image *image, size_t i) {
+  return (const float *)image->planes[CONIC_PLANE_RGBA] + 4 * i;
+}
+
+static int is_same(const conic_image *a, const conic_image *b) {
+  int same = 1;
+  for (int i = 0; i < CONIC_N_PLANES; i++)
+    if (a->planes[i] && i != CONIC_PLANE_POSITION)
+      same &= memcmp(a->planes[i], b->planes[i],
+                     (size_t)PIXELS * 4 * (size_t)conic_plane_describe((conic_plane)i)->n_channels) == 0;
+  return same;
+}
+
+/* A ball at z = 2 of opacity 0.8 with a wall behind it, before it, and through its middle. */
+static void check_walls(conic_context *context, const char *const names[2]) {
+  const double wall_z[] = {3.0, 1.0, 2.0, 2.0 - 1e-3, 2.0 + 1e-3};
+  const int hides[] = {0, 1, 0, 1, 0};
+  const float grey = 0.18f;
+  const double shown = conic_srgb_encode(0.18);
+  for (size_t k = 0; k < sizeof wall_z / sizeof *wall_z; k++) {
+    conic_triangles set = wall(context, wall_z[k], 0.0, grey);
+    CHECK_OK(conic_lend(context, names[1], &set));
+    conic_source *source = open_scene(context, names, 2, NULL);
+    const conic_shot shot = shot_of(CONIC_PROFILE_EXACT);
+    conic_image image = draw(context, source, &shot);
+    /* The pixel's centre is half a pixel off the axis: q = |c|²/|g|² there. */
+    const double off = 0.5 / 40.0, square = 2.0 * off * off, q = 4.0 * square / (1.0 + square) / 0.09;
+    const double alpha = hides[k] ? 0.0 : 0.8 * exp(-0.5 * q);
+    for (int c = 0; c < 3; c++)
+      CHECK_NEAR(pixel_of(&image, MIDDLE)[c], alpha * (0.2 + 0.25 * c) + (1.0 - alpha) * shown, 1e-5);
+    CHECK(pixel_of(&image, MIDDLE)[3] == 1.0f && image.is_display);
+    CHECK_NEAR(((const float *)image.planes[CONIC_PLANE_Z])[MIDDLE],
+               alpha * 2.0 / (1.0 + square) + (1.0 - alpha) * wall_z[k], 1e-5);
+    CHECK((((const uint32_t *)image.planes[CONIC_PLANE_ID])[MIDDLE] > 0u) == hides[k]);
+    CHECK(((const uint32_t *)image.planes[CONIC_PLANE_LAST])[MIDDLE] >= 1u);
+    CHECK(((const uint32_t *)image.planes[CONIC_PLANE_COUNT])[MIDDLE] == (hides[k] ? 1u : 2u));
+    CHECK(conic_source_input_of(source, 0) == 0 && conic_source_input_of(source, 1) == 1);
+    conic_image_release(context, &image);
+    conic_source_close(source);
+    conic_triangles_release(context, &set);
+  }
+}
+
+/* All profiles, and several samples a pixel, as the oracle has them; and the same bits by every instruction set. */
+static void check_oracle(conic_context *context, conic_source *source, conic_gaussian_profile profile, int samples) {
+  conic_shot shot = shot_of(profile);
+  conic_image surfaces;
+  conic_renderer *renderer;
+  conic_gaussian_judging judging;
+  conic_gaussian_verdict verdict;
+  conic_camera fine = shot.camera;
+  shot.view.samples = samples;
+  conic_image image = draw(context, source, &shot);
+  fine.width = fine.height = SIDE * samples;
+  fine.cx = fine.cy = 0.5 * fine.width;
+  fine.fx = fine.fy = 40.0 * samples;
+  conic_source_settle(source, &shot.render);
+  CHECK_OK(conic_renderer_create(context, &renderer));
+  CHECK_OK(conic_image_allocate(
+      context, fine.width, fine.height,
+      planes & (1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_NORMAL | 1u << CONIC_PLANE_ID),
+      &surfaces));
+  CHECK_OK(conic_source_draw(conic_source_surfaces(source), renderer, &fine, &shot.render, NULL, &surfaces, NULL));
+  const conic_gaussians *gaussians = conic_source_gaussians(source);
+  const conic_gaussian_surfaces given = {&surfaces, 0, (uint32_t)gaussians->count};
+  conic_gaussian_judging_init(&judging);
+  judging.samples = samples;
+  judging.surfaces = &given;
+  CHECK_OK(conic_gaussian_judge(context, gaussians, &shot.camera, &shot.gaussians, &judging, &image, NULL, &verdict));
+  printf("%-14s %d x %d: %zu equal, %zu rounded, %zu explained, %zu wrong\n", conic_gaussian_profile_name(profile),
+         samples, samples, verdict.pixels[CONIC_PIXEL_EQUAL], verdict.pixels[CONIC_PIXEL_ROUNDED],
+         verdict.pixels[CONIC_PIXEL_EXPLAINED], verdict.pixels[CONIC_PIXEL_WRONG]);
+  CHECK(verdict.pass && verdict.judged_pixels == PIXELS);
+  ((float *)surfaces.planes[CONIC_PLANE_Z])[0] *= 0.5f; /* which is seen */
+  ((float *)image.planes[CONIC_PLANE_RGBA])[4 * MIDDLE] += 0.01f;
+  CHECK_OK(conic_gaussian_judge(context, gaussians, &shot.camera, &shot.gaussians, &judging, &image, NULL, &verdict));
+  CHECK(verdict.pixels[CONIC_PIXEL_WRONG] == 2);
+  ((float *)image.planes[CONIC_PLANE_RGBA])[4 * MIDDLE] -= 0.01f;
+  for (int isa = CONIC_ISA_SCALAR; isa < CONIC_N_ISAS; isa++)
+    if (conic_isa_is_here((conic_isa)isa)) {
+      shot.render.isa = (conic_isa)isa;
+      conic_image other = draw(context, source, &shot);
+      memcpy((float *)other.planes[CONIC_PLANE_RGBA] + 4 * MIDDLE, pixel_of(&image, MIDDLE), sizeof(float));
+      CHECK(is_same(&image, &other));
+      conic_image_release(context, &other);
+    }
+  conic_image_release(context, &image);
+  conic_image_release(context, &surfaces);
+  conic_renderer_destroy(renderer);
+}
+
+/* A slope through a row of balls. */
+static void check_slope(conic_context *context, const char *const names[2]) {
+  conic_gaussians row = balls(context, 7, 1.2, 0.3, 0.6f);
+  conic_triangles set = wall(context, 2.0, 0.4, 0.5f);
+  conic_take_back_loans(context);
+  CHECK_OK(conic_lend(context, names[0], &row));
+  CHECK_OK(conic_lend(context, names[1], &set));
+  conic_source *source = open_scene(context, names, 2, NULL);
+  for (int profile = 0; profile < CONIC_N_GAUSSIAN_PROFILES; profile++)
+    check_oracle(context, source, (conic_gaussian_profile)profile, profile == CONIC_PROFILE_EXACT ? 2 : 1);
+  conic_source_close(source);
+  conic_triangles_release(context, &set);
+  conic_gaussians_release(context, &row);
+}
+
+/* Two scenes are one with all their Gaussians; a place is as if the file had it. */
+static void check_scenes(conic_context *context) {
+  const char *const names[] = {"memory:gaussians:a", "memory:gaussians:b"}, *const all_names[] = {"memory:gaussians:c"};
+  conic_gaussians a = balls(context, 3, 1.5, 0.5, 0.5f), b = balls(context, 4, 1.75, 0.5, 0.5f),
+                  all = balls(context, 7, 0.0, 0.0, 0.5f), moved = balls(context, 3, 1.5, 0.5, 0.5f);
+  const conic_shot shot = shot_of(CONIC_PROFILE_GSPLAT_1_6);
+  for (size_t i = 0; i < 3; i++)
+    moved.position[2][i] = a.position[2][i] - 0.25f;
+  for (size_t i = 0; i < 7; i++)
+    all.position[2][i] = i < 3 ? a.position[2][i] : b.position[2][i - 3];
+  conic_take_back_loans(context);
+  CHECK_OK(conic_lend(context, names[0], &a));
+  CHECK_OK(conic_lend(context, names[1], &b));
+  CHECK_OK(conic_lend(context, all_names[0], &all));
+  CHECK_OK(conic_lend(context, "memory:gaussians:moved", &moved));
+  conic_source *both = open_scene(context, names, 2, NULL), *one = open_scene(context, all_names, 1, NULL);
+  conic_image of_both = draw(context, both, &shot), of_one = draw(context, one, &shot);
+  CHECK(is_same(&of_both, &of_one));
+  CHECK(conic_source_input_of(both, 2) == 0 && conic_source_input_of(both, 3) == 1);
+  conic_source_close(both);
+  conic_image_release(context, &of_both);
+  const char *const as_moved[] = {"memory:gaussians:moved", "memory:gaussians:b"};
+  both = open_scene(context, names, 2, "0:0,0,-0.25");
+  conic_source *other = open_scene(context, as_moved, 2, NULL);
+  of_both = draw(context, both, &shot);
+  conic_image of_other = draw(context, other, &shot);
+  CHECK(is_same(&of_both, &of_other));
+  conic_source *none;
+  conic_source_options options;
+  conic_source_options_init(&options);
+  options.gaussians = &shot.gaussians;
+  const char *const wrong[] = {"2:0,0,1", "0:1,2",     "0:1,2,3;0:1,2,3",           "0:1,0,0,0,0,2,0,0,0,0,1,0",
+                               "x",       "0:1,2,nan", "0:-1,0,0,0,0,1,0,0,0,0,1,0"};
+  for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+    options.place = wrong[i];
+    CHECK(conic_source_open(context, names, 2, &options, &none) == CONIC_ERROR_ARGUMENT);
+  }
+  conic_source_close(both);
+  conic_source_close(one);
+  conic_source_close(other);
+  conic_image_release(context, &of_both);
+  conic_image_release(context, &of_one);
+  conic_image_release(context, &of_other);
+  conic_gaussians_release(context, &a);
+  conic_gaussians_release(context, &b);
+  conic_gaussians_release(context, &all);
+  conic_gaussians_release(context, &moved);
+}
+
+/* Light from beside the eye comes through a ball of opacity 0.8 to the wall behind it. */
+static void check_shadow(conic_context *context, const char *const names[2]) {
+  conic_gaussians ball = balls(context, 1, 2.0, 0.0, 0.8f);
+  conic_triangles set = wall(context, 3.0, 0.0, 0.5f);
+  conic_take_back_loans(context);
+  ball.position[0][0] = -2.0f;
+  CHECK_OK(conic_lend(context, names[0], &ball));
+  CHECK_OK(conic_lend(context, names[1], &set));
+  conic_source *source = open_scene(context, names, 2, NULL);
+  conic_shot shot = shot_of(CONIC_PROFILE_EXACT);
+  shot.render.shading = CONIC_SHADE_LAMBERT;
+  shot.render.lighting.is_given = shot.render.lighting.n_lights = 1;
+  shot.render.lighting.lights[0] =
+      (conic_light){.frame = CONIC_LIGHT_WORLD, .direction = {-2, 0, -1}, .color = {1, 1, 1}};
+  conic_image plain = draw(context, source, &shot);
+  shot.light.has_shadows = 1;
+  conic_image shadowed = draw(context, source, &shot);
+  for (size_t k = 0; k < 24;
+       k += 4) { /* the ray from the wall to the light, and how far it is from the ball's middle */
+    const double x = 3.0 * ((double)k + 0.5) / 40.0, y = 3.0 * 0.5 / 40.0, q = (x * x + y * y - 0.8 * x * x) / 0.09;
+    const double part = conic_srgb_decode((double)pixel_of(&shadowed, MIDDLE + k)[0]) /
+                        conic_srgb_decode((double)pixel_of(&plain, MIDDLE + k)[0]);
+    CHECK_NEAR(part, 1.0 - 0.8 * exp(-0.5 * q), 0.006);
+  }
+  conic_image_release(context, &plain);
+  conic_image_release(context, &shadowed);
+  conic_source_close(source);
+  conic_triangles_release(context, &set);
+  conic_gaussians_release(context, &ball);
+}
+
+int main(void) {
+  const char *const names[] = {"memory:gaussians:ball", "memory:triangles:wall"};
+  conic_context *context = check_context(2);
+  conic_gaussians ball = balls(context, 1, 2.0, 0.0, 0.8f);
+  CHECK_OK(conic_lend(context, names[0], &ball));
+  check_walls(context, names);
+  check_slope(context, names);
+  check_scenes(context);
+  check_shadow(context, names);
+  conic_context_destroy(context);
+  return check_result();
+}
