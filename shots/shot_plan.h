@@ -14,10 +14,10 @@ typedef enum conic_lit {
 typedef struct conic_shot_plan {
   int is_accumulated; /* it is the mean of samples */
   int is_gathered;    /* from views by pinholes */
-  int is_composited;  /* surfaces are among Gaussians */
   conic_lit lit;
   unsigned planes; /* what has to be drawn: the shot's, and what these are made of */
   int has_windows; /* it can be drawn piece by piece, to the same bits: in strips, or by several processes */
+  int is_composited;  /* surfaces are among Gaussians */
 } conic_shot_plan;
 
 /* Errors: ARGUMENT (a member is out of its range; what cannot be together). */

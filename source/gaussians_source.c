@@ -6,6 +6,7 @@
 #include "core/image/image_common.h"
 #include "gaussians/draw/gaussian_parts.h"
 #include "gaussians/draw/gaussian_tile.h"
+#include "gaussians/draw/surfaces_join.h"
 #include "gaussians/scene/gaussian_set.h"
 #include "raster/frame/samples.h"
 #include "raster/frame/statistics.h"

@@ -34,9 +34,3 @@ conic_status conic_gaussians_source_draw(conic_source *source, conic_renderer *r
 void conic_gaussians_source_tell(const conic_source *source, conic_facts *facts);
 
 extern const conic_source_windowing conic_gaussians_windowing;
-
-/* Puts surfaces, which have a plane for each that `planes` has, behind the Gaussians that were composited before them
- * over black: they get what is left of the light. `first_id` is that of the surfaces' ids 0; null `background`: none.
- * Surfaces are linear, and are encoded for Gaussians that are not (docs/reference/together.md). */
-void conic_surfaces_join(conic_context *context, const conic_image *surfaces, const float background[3], int is_linear,
-                         uint32_t first_id, conic_gaussian_planes *planes);

@@ -3,8 +3,7 @@
 #include "cli/commands/gaussian_commands.h"
 #include "cli/commands/verify_reference.h"
 #include "cli/render/sample_options.h"
-#include "raster/frame/samples.h"
-#include "source/surfaces_among.h"
+#include "cli/scene/surfaces_among.h"
 
 typedef struct gaussian_report {
   const cli_render_job *scene;
@@ -109,30 +108,6 @@ static conic_status draw_composited(cli_session *session, cli_render_job *scene,
   return status;
 }
 
-/* The surfaces among them as conic draws them, a pixel each sample; none: an empty image. */
-static conic_status draw_surfaces(cli_session *session, cli_render_job *scene, const conic_camera *camera,
-                                  const conic_image *image, conic_image *surfaces) {
-  conic_source *source = conic_source_surfaces(scene->source);
-  const conic_camera fine = conic_samples_camera(camera, scene->shot.view.samples, 0, camera->height);
-  const unsigned ids = 1u << CONIC_PLANE_ID | 1u << CONIC_PLANE_LAST, planes = conic_image_planes(image);
-  conic_render_options render = scene->shot.render;
-  conic_source_view view = scene->shot.view;
-  memset(surfaces, 0, sizeof *surfaces);
-  if (!source)
-    return CONIC_OK;
-  conic_source_settle(scene->source, &render);
-  render.has_background = 0;
-  view.samples = 1;
-  conic_status status =
-      conic_image_allocate(session->context, fine.width, fine.height,
-                           1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | (planes & 1u << CONIC_PLANE_NORMAL) |
-                               (planes & ids ? 1u << CONIC_PLANE_ID : 0),
-                           surfaces);
-  return status == CONIC_OK
-             ? conic_source_draw(source, scene->renderer, &fine, &render, &view, surfaces, &scene->statistics)
-             : status;
-}
-
 static int tell_judgement(cli_session *session, const gaussian_report *r) {
   int exit_code = cli_json_write(session, write_verdict, r);
   if (exit_code != CLI_DONE)
@@ -158,7 +133,7 @@ int cli_verify_composited(cli_session *session, cli_render_job *scene, size_t n_
   if (status == CONIC_OK)
     status = cli_reference_check_size(image_path, image, &camera);
   if (status == CONIC_OK)
-    status = draw_surfaces(session, scene, &camera, image, &drawn);
+    status = cli_draw_surfaces(session, scene, &camera, conic_image_planes(image), &drawn);
   double start = cli_seconds();
   if (status == CONIC_OK) {
     const conic_gaussians *gaussians = conic_source_gaussians(scene->source);

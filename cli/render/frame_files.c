@@ -3,6 +3,7 @@
 #include "cli/outputs.h"
 #include "cli/render/frames.h"
 #include "cli/scene/background_options.h"
+#include "cli/scene/surfaces_among.h"
 #include "core/coloring/color_ramp.h"
 #include "core/coloring/legend.h"
 #include "core/files/disk.h"
@@ -153,6 +154,19 @@ static conic_status make_beside(cli_session *session, const cli_render_job *job,
                                    : conic_image_overdraw(context, image, map);
 }
 
+static conic_status write_deep_gaussians(cli_session *session, const cli_render_job *job, const char *path,
+                                         const conic_camera *camera, const conic_image *image) {
+  conic_image surfaces;
+  conic_gaussian_options options = job->shot.gaussians;
+  conic_status status = cli_draw_surfaces(session, job, camera, 1u << CONIC_PLANE_ID, &surfaces);
+  options.isa = job->shot.render.isa;
+  if (status == CONIC_OK)
+    status = conic_gaussians_write_deep(session->context, conic_source_gaussians(job->source), camera, &options,
+                                        surfaces.width ? &surfaces : NULL, path, image);
+  conic_image_release(session->context, &surfaces);
+  return status;
+}
+
 static conic_status write_deep(cli_session *session, const cli_render_job *job, const char *path,
                                const conic_camera *camera, const conic_image *image) {
   const conic_drawing *drawing = &conic_source_chosen(job->source)->drawing;
@@ -176,7 +190,8 @@ static conic_status write_beside(cli_session *session, cli_render_job *job, besi
   char *path = cli_frame_name(job, names[what], i_frame);
   conic_status status = path ? CONIC_OK : CONIC_ERROR_MEMORY;
   if (path && what == DEEP) {
-    status = write_deep(session, job, path, camera, image);
+    status = job->abilities & CONIC_SOURCE_COMPOSITES ? write_deep_gaussians(session, job, path, camera, image)
+                                                      : write_deep(session, job, path, camera, image);
   } else if (path && (status = make_beside(session, job, what, camera, image, &map)) == CONIC_OK) {
     status = conic_image_write_as(session->context, path, &map, &job->writing);
     conic_image_release(session->context, &map);

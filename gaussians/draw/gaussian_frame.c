@@ -29,6 +29,7 @@ struct conic_gaussian_picture {
   float (*normals)[3], *keys;
   size_t *n_of_run, *n_skipped_of_run, *n_entries_of_run, n_runs, n;
   int has_normals;
+  conic_gaussian_steps *steps; /* null: nobody takes them */
   /* Of the window that is drawn. */
   const conic_gaussian_window *window;
   conic_gaussian_planes *planes;
@@ -173,6 +174,7 @@ static void composite_tile(void *data, size_t i_tile, int i_thread) {
                               .entries = f->bins.entries + f->bins.tile_begin[i_tile],
                               .n = f->bins.tile_begin[i_tile + 1] - f->bins.tile_begin[i_tile],
                               .surface_z = f->planes->surface_z ? surface_z : NULL,
+                              .steps = f->steps,
                               .room = f->rooms ? f->rooms[i_thread] : NULL};
   if (list.surface_z)
     take_surface(f, &tile, surface_z);
@@ -269,8 +271,16 @@ static conic_status composite_window(frame *f) {
   return status;
 }
 
+void conic_gaussian_picture_note(conic_gaussian_picture *f, conic_gaussian_steps *steps) {
+  f->steps = steps;
+  f->options.device = NULL;
+  conic_gaussian_loops_init(&f->loops, CONIC_ISA_SCALAR);
+}
+
 conic_status conic_gaussian_picture_draw(conic_gaussian_picture *f, const conic_gaussian_window *window,
                                          conic_gaussian_planes *planes) {
+  for (int axis = 0; axis < 2 && f->steps; axis++)
+    f->steps->first[axis] = window->begin[axis];
   f->window = window;
   f->planes = planes;
   conic_status status = composite_window(f);

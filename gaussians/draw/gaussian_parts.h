@@ -1,7 +1,7 @@
 /* A picture of Gaussians that is set up once and drawn window by window. */
 #pragma once
 
-#include "conic/gaussian_render.h"
+#include "gaussians/draw/gaussian_tile.h"
 
 typedef struct conic_gaussian_picture conic_gaussian_picture;
 
@@ -21,6 +21,10 @@ conic_status conic_gaussian_picture_begin(conic_context *context, const conic_ga
  * picture. Errors: MEMORY, CANCELLED, the device's. */
 conic_status conic_gaussian_picture_draw(conic_gaussian_picture *picture, const conic_gaussian_window *window,
                                          conic_gaussian_planes *planes);
+
+/* From now on the picture is drawn in plain C, and says of what: `steps` has room for all that windows composite, and
+ * their size. */
+void conic_gaussian_picture_note(conic_gaussian_picture *picture, conic_gaussian_steps *steps);
 
 /* What was drawn so far, and how long it took. The counts are the whole picture's from the beginning on. */
 const conic_gaussian_statistics *conic_gaussian_picture_statistics(const conic_gaussian_picture *picture);

@@ -20,6 +20,17 @@ static void composite_planes(const conic_gaussian_list *list, uint32_t i_footpri
     tile->normal[c][at] += w * list->normals[i_footprint][c];
 }
 
+#ifndef CONIC_ON_DEVICE
+static void note_step(const conic_gaussian_list *list, const conic_gaussian_footprint *f, float z, float alpha,
+                      const conic_gaussian_tile *tile, size_t at) {
+  const conic_gaussian_steps *to = list->steps;
+  const size_t x = (size_t)(tile->x + conic_gaussian_column(at) - to->first[0]),
+               y = (size_t)(tile->y + conic_gaussian_row(at) - to->first[1]), pixel = y * (size_t)to->width + x;
+  if (x < (size_t)to->width) /* and no pixel beside the picture */
+    to->steps[to->next[pixel]++] = (conic_gaussian_step){z, alpha, {f->color[0], f->color[1], f->color[2]}, f->index};
+}
+#endif
+
 /* Returns 0 where compositing has ended at the pixel. What is not before its surface is left out. */
 static int composite_one(const conic_gaussian_list *list, uint32_t i_footprint, float z, float alpha,
                          conic_gaussian_tile *tile, size_t at) {
@@ -35,6 +46,10 @@ static int composite_one(const conic_gaussian_list *list, uint32_t i_footprint, 
     tile->rgb[c][at] += w * f->color[c];
   tile->T[at] = after;
   tile->count[at]++;
+#ifndef CONIC_ON_DEVICE
+  if (list->steps)
+    note_step(list, f, z, alpha, tile, at);
+#endif
   if (list->wants_all)
     composite_planes(list, i_footprint, z, w, before, after, tile, at);
   return 1;

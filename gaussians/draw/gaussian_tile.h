@@ -41,6 +41,19 @@ typedef struct conic_gaussian_tile {
 enum { CONIC_GAUSSIAN_ROOM = 320 };
 
 #ifndef CONIC_ON_DEVICE
+/* What a pixel was composited of. */
+typedef struct conic_gaussian_step {
+  float z, alpha, color[3];
+  uint32_t index;
+} conic_gaussian_step;
+
+/* The steps of all pixels of a window: pixel (x, y) puts its next one at next[y·width + x], and goes on. */
+typedef struct conic_gaussian_steps {
+  conic_gaussian_step *steps;
+  size_t *next;
+  int width, first[2]; /* first: the pixel of the tile's picture that is the first of the window */
+} conic_gaussian_steps;
+
 /* The directions of a tile's rays, each the sum of two floats; NaN where there is none. */
 typedef struct conic_sight_rays {
   float high[3][CONIC_GAUSSIAN_TILE_PIXELS], low[3][CONIC_GAUSSIAN_TILE_PIXELS];
@@ -63,7 +76,8 @@ typedef struct conic_gaussian_list {
   const conic_gaussian_sight *sights;   /* by footprint; of CONIC_SHAPE_SIGHT */
   const conic_sight_rays *tile_rays;    /* of CONIC_SHAPE_SIGHT */
   int is_parallel;                      /* rays are */
-  const float *surface_z; /* by pixel of the tile: what is not before it is not composited; null: all is */
+  const float *surface_z;            /* by pixel of the tile: what is not before it is not composited; null: all is */
+  const conic_gaussian_steps *steps; /* takes what is composited, in plain C alone; null: nobody does */
 #endif
 } conic_gaussian_list;
 

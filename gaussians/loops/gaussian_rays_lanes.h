@@ -209,9 +209,10 @@ CONIC_INLINE response response_in_order(const scene *s, const meetings *m, index
   response to = {.alpha = lanes_gather(m->alpha[0], at_pixels(which))};
   for (uint32_t k = 0; k < 3; k++)
     to.color[k] = lanes_gather(m->looks[0].color, at + k);
+  if (wants_all || conic_gaussian_list_surface(list, 0))
+    to.z = lanes_gather(m->z[0], at_pixels(which));
   if (!wants_all)
     return to;
-  to.z = lanes_gather(m->z[0], at_pixels(which));
   for (int lane = 0; lane < CONIC_LANES; lane++) {
     const uint32_t footprint = m->looks[which[lane]].footprint;
     to.index[lane] = list->footprints[footprint].index;

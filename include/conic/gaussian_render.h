@@ -93,5 +93,16 @@ CONIC_API conic_status conic_gaussians_render(conic_context *context, const coni
                                               const conic_camera *camera, const conic_gaussian_options *options,
                                               conic_gaussian_planes *planes, conic_gaussian_statistics *statistics);
 
+/* Writes a deep EXR, whose pixels have a sample for each Gaussian that they are composited of, in the order of depth:
+ * alpha, its colour times that, the z of the plane Z, its number as id, and its share of the light as weight. Laid over
+ * each other they give the picture, where the profile's order is that of depth. Surfaces of the picture's size, with
+ * rgba, Z and id, are the samples behind; null: there are none. `header` gives the attributes; null: none. The file
+ * appears when it is whole; how large it is is logged before. Errors: as conic_gaussians_render, ARGUMENT, UNSUPPORTED
+ * (a build without OpenEXR), IO. */
+CONIC_API conic_status conic_gaussians_write_deep(conic_context *context, const conic_gaussians *gaussians,
+                                                  const conic_camera *camera, const conic_gaussian_options *options,
+                                                  const conic_image *surfaces, const char *path,
+                                                  const conic_image *header);
+
 CONIC_END_C
 #endif

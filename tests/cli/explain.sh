@@ -108,4 +108,18 @@ if command -v oiiotool > /dev/null; then
 else
   echo "skipped: another program's eyes, as there is no oiiotool"
 fi
+
+# Of Gaussians among surfaces: what is laid over each other is the picture, where the order is that of depth
+run 0 make gaussians -n 3000 -o scene.ply
+printf 'v -9 -9 0\nv 9 -9 0\nv 9 9 0.5\nv -9 9 0.5\nf 1 2 3 4\n' > wall.obj
+if command -v oiiotool > /dev/null; then
+  for profile in exact gsplat-1.6; do
+    run 0 render scene.ply wall.obj --profile $profile --size 90x60 --deep deep.exr -o flat.exr
+    oiiotool deep.exr --flatten --ch R,G,B,A -o laid.exr && oiiotool flat.exr --ch R,G,B,A -o shown.exr &&
+      oiiotool --fail 2e-6 --warn 2e-6 laid.exr shown.exr --diff > out || fail "$profile: not the picture: $(cat out)"
+  done
+  run 0 render scene.ply --size 90x60 --deep deep.exr -o flat.exr
+  oiiotool --stats deep.exr | grep -q 'Total deep samples' || fail "no deep samples"
+fi
+run 2 render scene.ply wall.obj --deep deep.exr --ao 4 --accumulate 2
 [[ $failures -eq 0 ]]

@@ -168,6 +168,10 @@ static void check_oracle(conic_context *context, conic_source *source, conic_gau
       CHECK(is_same(&image, &other));
       conic_image_release(context, &other);
     }
+  shot.planes = 1u << CONIC_PLANE_RGBA; /* alone it has the same bits, too */
+  conic_image alone = draw(context, source, &shot);
+  CHECK(memcmp(alone.planes[CONIC_PLANE_RGBA], image.planes[CONIC_PLANE_RGBA], sizeof(float) * 4 * MIDDLE) == 0);
+  conic_image_release(context, &alone);
   conic_image_release(context, &image);
   conic_image_release(context, &surfaces);
   conic_renderer_destroy(renderer);

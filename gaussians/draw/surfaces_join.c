@@ -1,7 +1,7 @@
-/* Surfaces behind Gaussians: docs/reference/together.md has these formulas. */
+#include "gaussians/draw/surfaces_join.h"
+
 #include "core/base/base.h"
 #include "core/base/color.h"
-#include "source/gaussians_source.h"
 
 typedef struct joining {
   const conic_image *surfaces;
@@ -11,9 +11,8 @@ typedef struct joining {
   conic_gaussian_planes *planes;
 } joining;
 
-/* The colour of a surface of alpha A as Gaussians have theirs, times A. */
-static float encode(const joining *j, float premultiplied, float A) {
-  return j->is_linear ? premultiplied : A * (float)conic_srgb_encode((double)(premultiplied / A));
+float conic_surface_shown(float premultiplied, float A, int is_linear) {
+  return is_linear ? premultiplied : A * (float)conic_srgb_encode((double)(premultiplied / A));
 }
 
 static void join_colors(const joining *j, size_t i, float T, const float rgba[4]) {
@@ -21,7 +20,7 @@ static void join_colors(const joining *j, size_t i, float T, const float rgba[4]
   const float A = rgba[3];
   for (size_t c = 0; c < 3; c++) {
     const float behind = j->background ? j->background[c] : 0.0f;
-    const float color = A > 0.0f ? encode(j, rgba[c], A) + (1.0f - A) * behind : behind;
+    const float color = A > 0.0f ? conic_surface_shown(rgba[c], A, j->is_linear) + (1.0f - A) * behind : behind;
     p->rgb[3 * i + c] += T * color;
   }
   p->transparency[i] = T * (1.0f - A);
