@@ -68,6 +68,7 @@ static map_drawer drawer_of(const conic_shot_stage *stage) {
   drawer.render.epsilon = scale->epsilon;
   drawer.render.splat_length = CONIC_MAP_LENGTHS * scale->splat_length;
   drawer.render.cull_back = 0;
+  drawer.render.skip_hidden = 1;
   drawer.render.shading = CONIC_SHADE_NONE;
   return drawer;
 }
