@@ -181,9 +181,10 @@ static void hide_sky_row(void *data, size_t y) {
   const float *albedo = l->image->planes[CONIC_PLANE_ALBEDO];
   for (size_t x = 0; x < (size_t)l->image->width; x++) {
     size_t i = conic_light_pixel(l, x, y);
-    for (size_t c = work->first; c < work->end; c++)
+    float part = l->spread.filled[i];
+    for (size_t c = work->first; part != 0.0f && c < work->end; c++)
       if (albedo[3 * i + c] > 0.0f)
-        l->hidden[3 * i + c] += albedo[3 * i + c] / conic_light_coverage(l, i) * l->spread.filled[i];
+        l->hidden[3 * i + c] += albedo[3 * i + c] / conic_light_coverage(l, i) * part;
   }
 }
 

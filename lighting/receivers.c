@@ -27,23 +27,63 @@ static int is_receiver(const receiver_rows *r, size_t pixel) {
   return r->z[pixel] > 0.0f && r->z[pixel] < 1e30f && length_squared > 0.5f && length_squared < 2.0f;
 }
 
-static int place_receiver(const receiver_rows *r, size_t x, size_t y, double world[3]) {
-  double z = (double)r->z[y * (size_t)r->camera->width + x];
-  return conic_pixel_place(&r->rays, (double)x + 0.5 + r->offset, (double)y + 0.5 + r->offset, z, world);
+enum { PLACED_TOGETHER = 128 };
+
+/* A run of a row's pixels. */
+typedef struct placed_run {
+  size_t first, n;
+  double world[3][PLACED_TOGETHER];
+  unsigned char is_there[PLACED_TOGETHER]; /* the pixel is a receiver, and has a place */
+} placed_run;
+
+/* conic_pixel_place of a pinhole, in lanes. */
+static void place_through_pinhole(const receiver_rows *r, size_t y, placed_run *run) {
+  const conic_camera camera = *r->camera;
+  const double(*m)[4] = camera.cam_from_world, left = (double)run->first, offset = r->offset;
+  const double down = ((double)y + 0.5 + offset - camera.cy) / camera.fy;
+  const float *z = r->z + y * (size_t)camera.width + run->first;
+  placed_run *restrict to = run;
+  for (int i = 0; i < (int)run->n; i++) {
+    double depth = (double)z[i], right = ((left + (double)i) + 0.5 + offset - camera.cx) / camera.fx;
+    double x = depth * right - m[0][3], along = depth * down - m[1][3], forward = depth - m[2][3];
+    for (int axis = 0; axis < 3; axis++)
+      to->world[axis][i] = ((0.0 + m[0][axis] * x) + m[1][axis] * along) + m[2][axis] * forward;
+  }
+}
+
+static void place_run(const receiver_rows *r, size_t y, size_t first, placed_run *run) {
+  const size_t width = (size_t)r->camera->width, row = y * width;
+  run->first = first;
+  run->n = width - first < PLACED_TOGETHER ? width - first : PLACED_TOGETHER;
+  int any = 0;
+  for (size_t i = 0; i < run->n; i++)
+    any |= run->is_there[i] = (unsigned char)is_receiver(r, row + first + i);
+  if (any && r->rays.is_pinhole)
+    place_through_pinhole(r, y, run);
+  for (size_t i = 0; i < run->n && !r->rays.is_pinhole; i++) {
+    double world[3], x_px = (double)(first + i) + 0.5 + r->offset, y_px = (double)y + 0.5 + r->offset;
+    run->is_there[i] =
+        run->is_there[i] && conic_pixel_place(&r->rays, x_px, y_px, (double)r->z[row + first + i], world);
+    for (int axis = 0; axis < 3 && run->is_there[i]; axis++)
+      run->world[axis][i] = world[axis];
+  }
 }
 
 static void count_receivers(void *data, size_t y) {
   const receiver_rows *r = data;
   receiver_row row = {.low = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, .high = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
   size_t width = (size_t)r->camera->width;
-  double world[3];
   int is_parallel = r->camera->kind == CONIC_CAMERA_ORTHOGRAPHIC;
-  for (size_t x = 0; x < width; x++) {
-    if (!is_receiver(r, y * width + x) || !place_receiver(r, x, y, world))
-      continue;
-    row.count++;
-    row.spacing += is_parallel ? 1.0 : (double)r->z[y * width + x];
-    conic_widen_box(row.low, row.high, world);
+  placed_run run;
+  for (size_t first = 0; first < width; first += run.n) {
+    place_run(r, y, first, &run);
+    for (size_t i = 0; i < run.n; i++) {
+      if (!run.is_there[i])
+        continue;
+      row.count++;
+      row.spacing += is_parallel ? 1.0 : (double)r->z[y * width + first + i];
+      conic_widen_box(row.low, row.high, (const double[3]){run.world[0][i], run.world[1][i], run.world[2][i]});
+    }
   }
   r->rows[y] = row;
 }
@@ -52,16 +92,19 @@ static void take_receivers(void *data, size_t y) {
   const receiver_rows *r = data;
   conic_receivers *to = r->to;
   size_t width = (size_t)r->camera->width, place = r->rows[y].first;
-  double world[3];
-  for (size_t x = 0; x < width; x++) {
-    size_t pixel = y * width + x;
-    if (!is_receiver(r, pixel) || !place_receiver(r, x, y, world))
-      continue;
-    for (int axis = 0; axis < 3; axis++) {
-      to->position[axis][place] = (float)(world[axis] - to->origin[axis]);
-      to->normal[axis][place] = r->normal[3 * pixel + (size_t)axis];
+  placed_run run;
+  for (size_t first = 0; first < width && r->rows[y].count > 0; first += run.n) {
+    place_run(r, y, first, &run);
+    for (size_t i = 0; i < run.n; i++) {
+      size_t pixel = y * width + first + i;
+      if (!run.is_there[i])
+        continue;
+      for (int axis = 0; axis < 3; axis++) {
+        to->position[axis][place] = (float)(run.world[axis][i] - to->origin[axis]);
+        to->normal[axis][place] = r->normal[3 * pixel + (size_t)axis];
+      }
+      to->pixel[place++] = (uint32_t)pixel;
     }
-    to->pixel[place++] = (uint32_t)pixel;
   }
 }
 
