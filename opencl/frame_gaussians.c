@@ -160,7 +160,7 @@ conic_status conic_opencl_composite(conic_gaussian_device *device, const conic_g
                                        .width = c->target.width,
                                        .height = c->target.height,
                                        .n_tiles_x = (int32_t)c->bins->n_tiles_x,
-                                       .wants_all = c->wants_all};
+                                       .wants = c->wants};
   for (int i = 0; i < 3; i++)
     g.picture.background[i] = c->target.background[i];
   if (c->rules->shape == CONIC_SHAPE_RAY)

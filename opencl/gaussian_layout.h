@@ -10,7 +10,7 @@ enum { CONIC_PIXELS_ROOM = 12 * 256, CONIC_TILES_ROOM = 3 * 64 + 4 };
 /* Some of its tiles, one after the other, whose entries alone are there. */
 typedef struct conic_device_gaussians {
   conic_gaussian_rules rules;
-  int32_t width, height, n_tiles_x, wants_all;
+  int32_t width, height, n_tiles_x, wants;
   uint32_t first_tile, n_tiles;
   uint64_t first_entry;
   float background[3];

@@ -49,12 +49,12 @@ static size_t meet_block(const scene *s, const ray_lists *to, uint block) {
 }
 
 /* What each lane's own Gaussian looks like. */
-static void look_at_each(const conic_gaussian_list *list, index_lanes which, int wants_all, response *to) {
+static void look_at_each(const conic_gaussian_list *list, index_lanes which, int wants, response *to) {
   for (int lane = 0; lane < CONIC_LANES; lane++) {
     const uint footprint = ((const uint *)&which)[lane];
     for (int k = 0; k < 3; k++) {
       ((float *)&to->color[k])[lane] = list->footprints[footprint].color[k];
-      if (wants_all)
+      if (wants)
         ((float *)&to->normal[k])[lane] = list->normals ? list->normals[footprint][k] : 0.0f;
     }
     ((uint *)&to->index)[lane] = list->footprints[footprint].index;
@@ -62,16 +62,16 @@ static void look_at_each(const conic_gaussian_list *list, index_lanes which, int
 }
 
 /* What they all look like where they are one. */
-static void look_at_one(const conic_gaussian_list *list, uint footprint, int wants_all, response *to) {
+static void look_at_one(const conic_gaussian_list *list, uint footprint, int wants, response *to) {
   for (int k = 0; k < 3; k++)
     to->color[k] = lanes_of(list->footprints[footprint].color[k]);
-  if (wants_all)
+  if (wants)
     add_planes_of_footprint(list, footprint, to);
 }
 
-static void composite_block(const scene *s, const ray_lists *lists, size_t n, uint block, int wants_all) {
+static void composite_block(const scene *s, const ray_lists *lists, size_t n, uint block, int wants) {
   const size_t at = block * CONIC_GAUSSIAN_BLOCK_PIXELS;
-  pixels p = take_pixels(s, 0xffff, at, wants_all);
+  pixels p = take_pixels(s, 0xffff, at, wants);
   for (size_t i = 0; i < n && lanes_any(p.goes_on); i++) {
     const index_lanes which = vload16(i, lists->which);
     response to;
@@ -81,12 +81,12 @@ static void composite_block(const scene *s, const ray_lists *lists, size_t n, ui
     if (!lanes_any(to.covered & p.goes_on))
       continue;
     if (lanes_any(which != which.s0))
-      look_at_each(s->list, which, wants_all, &to);
+      look_at_each(s->list, which, wants, &to);
     else
-      look_at_one(s->list, which.s0, wants_all, &to);
-    composite_lanes(s, &to, &p, wants_all);
+      look_at_one(s->list, which.s0, wants, &to);
+    composite_lanes(s, &to, &p, wants);
   }
-  put_pixels(s->tile, &p, at, wants_all);
+  put_pixels(s->tile, &p, at, wants);
 }
 
 static void composite_rays_by_blocks(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
@@ -103,9 +103,9 @@ static void composite_rays_by_blocks(const conic_gaussian_list *list, conic_gaus
   }
   for (uint block = 0; block < CONIC_GAUSSIAN_BLOCKS; block++) {
     const size_t n = meet_block(&s, &lists, block);
-    if (list->wants_all)
-      composite_block(&s, &lists, n, block, 1);
+    if (list->wants)
+      composite_block(&s, &lists, n, block, CONIC_GAUSSIAN_ALL);
     else
-      composite_block(&s, &lists, n, block, 0);
+      composite_block(&s, &lists, n, block, CONIC_GAUSSIAN_COLORS);
   }
 }

@@ -25,6 +25,6 @@
 /* The list of a tile. */
 #define GAUSSIAN_LIST(tile)                                                                                            \
   {                                                                                                                    \
-    &picture.rules, footprints, rays, normals, picture.wants_all, entries + (tile_begin[tile] - picture.first_entry),  \
+    &picture.rules, footprints, rays, normals, picture.wants, entries + (tile_begin[tile] - picture.first_entry),  \
         tile_begin[tile + 1] - tile_begin[tile], 0                                                                     \
   }

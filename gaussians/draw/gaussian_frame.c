@@ -132,8 +132,10 @@ static conic_gaussian_target target_of(const frame *f) {
                                  p->count,    p->id,           p->last};
 }
 
-static int wants_all(const conic_gaussian_planes *p) {
-  return p->z || p->median_z || p->inverse_z || p->normal || p->id || p->last;
+static int wanted_of(const conic_gaussian_planes *p) {
+  if (p->median_z || p->inverse_z || p->normal || p->id || p->last)
+    return CONIC_GAUSSIAN_ALL;
+  return p->z || p->surface_z ? CONIC_GAUSSIAN_DEPTHS : CONIC_GAUSSIAN_COLORS;
 }
 
 static uint64_t sum_of(const uint32_t *counts, size_t n) {
@@ -170,7 +172,7 @@ static void composite_tile(void *data, size_t i_tile, int i_thread) {
                               .tile_rays = rays ? &rays->tiles[y * (size_t)rays->n_tiles[0] + x] : NULL,
                               .is_parallel = f->view.is_parallel,
                               .normals = (const float(*)[3])f->normals,
-                              .wants_all = wants_all(f->planes),
+                              .wants = wanted_of(f->planes),
                               .entries = f->bins.entries + f->bins.tile_begin[i_tile],
                               .n = f->bins.tile_begin[i_tile + 1] - f->bins.tile_begin[i_tile],
                               .surface_z = f->planes->surface_z ? surface_z : NULL,
@@ -219,7 +221,7 @@ static conic_status composite_on_device(frame *f) {
                                             .footprints = f->footprints,
                                             .rays = f->rays,
                                             .normals = (const float(*)[3])f->normals,
-                                            .wants_all = wants_all(f->planes),
+                                            .wants = wanted_of(f->planes),
                                             .bins = &f->bins,
                                             .target = target_of(f)};
   if (!composition.target.count)

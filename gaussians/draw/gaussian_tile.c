@@ -50,7 +50,7 @@ static int composite_one(const conic_gaussian_list *list, uint32_t i_footprint, 
   if (list->steps)
     note_step(list, f, z, alpha, tile, at);
 #endif
-  if (list->wants_all)
+  if (list->wants)
     composite_planes(list, i_footprint, z, w, before, after, tile, at);
   return 1;
 }

@@ -60,13 +60,17 @@ typedef struct conic_sight_rays {
 } conic_sight_rays;
 #endif
 
+/* What is wanted of a picture: T, rgb and count alone; sum and sum_of_z, too; or all. Plain C composites the first or
+ * all. */
+enum { CONIC_GAUSSIAN_COLORS, CONIC_GAUSSIAN_DEPTHS, CONIC_GAUSSIAN_ALL };
+
 /* What is composited in a tile: the footprints that the entries name, in their order. */
 typedef struct conic_gaussian_list {
   const conic_gaussian_rules *rules;
   const CONIC_STORED conic_gaussian_footprint *footprints;
   const CONIC_STORED conic_gaussian_ray *rays; /* by footprint; of shapes that have them */
   const CONIC_STORED float (*normals)[3];      /* by footprint; null: not wanted */
-  int wants_all;                               /* else T, rgb and count alone */
+  int wants;                                   /* one of the above */
   const CONIC_STORED uint32_t *entries;
   size_t n;
   CONIC_STORED void *room; /* of what is ordered along rays: CONIC_GAUSSIAN_ROOM bytes for each entry and 16 more;

@@ -60,33 +60,33 @@ CONIC_INLINE response respond(const scene *s, const gaussian_record *r, uint32_t
 }
 
 CONIC_INLINE void composite_vector(const scene *s, gaussian_batch *b, size_t n_listed, size_t pixel,
-                                   conic_gaussian_shape shape, int wants_all) {
+                                   conic_gaussian_shape shape, int wants) {
   const conic_gaussian_list *list = s->list;
   const places at = places_at(pixel);
-  pixels p = take_pixels(s, b->goes_on[pixel / CONIC_LANES], pixel, wants_all);
+  pixels p = take_pixels(s, b->goes_on[pixel / CONIC_LANES], pixel, wants);
   for (size_t i = 0; i < n_listed && lanes_any(p.goes_on); i++) {
     const gaussian_record *r = &b->records[b->listed[i]];
     const uint32_t footprint = b->footprints[b->listed[i]];
     response to = respond(s, r, footprint, at, shape);
     if (!lanes_any(to.covered))
       continue;
-    if (wants_all)
+    if (wants == CONIC_GAUSSIAN_ALL)
       add_planes_of_footprint(list, footprint, &to);
-    composite_lanes(s, &to, &p, wants_all);
+    composite_lanes(s, &to, &p, wants);
   }
-  put_pixels(s->tile, &p, pixel, wants_all);
+  put_pixels(s->tile, &p, pixel, wants);
   b->goes_on[pixel / CONIC_LANES] = lanes_bits(p.goes_on);
 }
 
 /* Returns 0 where compositing has ended at all pixels. */
-CONIC_INLINE int composite_batch(const scene *s, gaussian_batch *b, conic_gaussian_shape shape, int wants_all) {
+CONIC_INLINE int composite_batch(const scene *s, gaussian_batch *b, conic_gaussian_shape shape, int wants) {
   unsigned going = 0;
   for (int block = 0; block < CONIC_GAUSSIAN_BLOCKS; block++) {
     size_t n_listed = list_block(b->blocks, b->n, block, b->listed);
     for (size_t pixel = (size_t)block * CONIC_GAUSSIAN_BLOCK_PIXELS;
          pixel < (size_t)(block + 1) * CONIC_GAUSSIAN_BLOCK_PIXELS; pixel += CONIC_LANES) {
       if (b->goes_on[pixel / CONIC_LANES])
-        composite_vector(s, b, n_listed, pixel, shape, wants_all);
+        composite_vector(s, b, n_listed, pixel, shape, wants);
       going |= b->goes_on[pixel / CONIC_LANES];
     }
   }
@@ -94,30 +94,34 @@ CONIC_INLINE int composite_batch(const scene *s, gaussian_batch *b, conic_gaussi
 }
 
 CONIC_INLINE void composite_in_order(const conic_gaussian_list *list, conic_gaussian_tile *tile,
-                                     conic_gaussian_shape shape, int wants_all) {
+                                     conic_gaussian_shape shape, int wants) {
   const scene s = scene_of(list, tile);
   gaussian_batch b;
   for (size_t i = 0; i < CONIC_GAUSSIAN_TILE_PIXELS / CONIC_LANES; i++)
     b.goes_on[i] = (1u << CONIC_LANES) - 1;
   for (size_t first = 0; first < list->n; first += BATCH) {
     take_batch(list, tile, first, &b);
-    if (!composite_batch(&s, &b, shape, wants_all))
+    if (!composite_batch(&s, &b, shape, wants))
       return;
   }
 }
 
 static void composite_ellipses_in_lanes(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
-  if (list->wants_all)
-    composite_in_order(list, tile, CONIC_SHAPE_ELLIPSE, 1);
+  if (list->wants == CONIC_GAUSSIAN_ALL)
+    composite_in_order(list, tile, CONIC_SHAPE_ELLIPSE, CONIC_GAUSSIAN_ALL);
+  else if (list->wants == CONIC_GAUSSIAN_DEPTHS)
+    composite_in_order(list, tile, CONIC_SHAPE_ELLIPSE, CONIC_GAUSSIAN_DEPTHS);
   else
-    composite_in_order(list, tile, CONIC_SHAPE_ELLIPSE, 0);
+    composite_in_order(list, tile, CONIC_SHAPE_ELLIPSE, CONIC_GAUSSIAN_COLORS);
 }
 
 static void composite_discs_in_lanes(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
-  if (list->wants_all)
-    composite_in_order(list, tile, CONIC_SHAPE_DISC, 1);
+  if (list->wants == CONIC_GAUSSIAN_ALL)
+    composite_in_order(list, tile, CONIC_SHAPE_DISC, CONIC_GAUSSIAN_ALL);
+  else if (list->wants == CONIC_GAUSSIAN_DEPTHS)
+    composite_in_order(list, tile, CONIC_SHAPE_DISC, CONIC_GAUSSIAN_DEPTHS);
   else
-    composite_in_order(list, tile, CONIC_SHAPE_DISC, 0);
+    composite_in_order(list, tile, CONIC_SHAPE_DISC, CONIC_GAUSSIAN_COLORS);
 }
 
 #ifndef CONIC_ON_DEVICE

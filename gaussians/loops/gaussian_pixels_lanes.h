@@ -40,7 +40,7 @@ typedef struct response {
   index_lanes index;
 } response;
 
-CONIC_INLINE pixels take_pixels(const scene *s, unsigned going, size_t at, int wants_all) {
+CONIC_INLINE pixels take_pixels(const scene *s, unsigned going, size_t at, int wants) {
   const conic_gaussian_tile *tile = s->tile;
   const float *surface_z = conic_gaussian_list_surface(s->list, at);
   pixels p = {.goes_on = lanes_mask_of(going),
@@ -48,10 +48,12 @@ CONIC_INLINE pixels take_pixels(const scene *s, unsigned going, size_t at, int w
               .T = lanes_load(tile->T + at),
               .rgb = {lanes_load(tile->rgb[0] + at), lanes_load(tile->rgb[1] + at), lanes_load(tile->rgb[2] + at)},
               .count = lanes_load_indices(tile->count + at)};
-  if (!wants_all)
+  if (wants == CONIC_GAUSSIAN_COLORS)
     return p;
   p.sum = lanes_load(tile->sum + at);
   p.sum_of_z = lanes_load(tile->sum_of_z + at);
+  if (wants != CONIC_GAUSSIAN_ALL)
+    return p;
   p.inverse_z = lanes_load(tile->inverse_z + at);
   p.median_z = lanes_load(tile->median_z + at);
   p.heaviest = lanes_load(tile->heaviest + at);
@@ -62,15 +64,17 @@ CONIC_INLINE pixels take_pixels(const scene *s, unsigned going, size_t at, int w
   return p;
 }
 
-CONIC_INLINE void put_pixels(conic_gaussian_tile *tile, const pixels *p, size_t at, int wants_all) {
+CONIC_INLINE void put_pixels(conic_gaussian_tile *tile, const pixels *p, size_t at, int wants) {
   lanes_store(tile->T + at, p->T);
   for (int k = 0; k < 3; k++)
     lanes_store(tile->rgb[k] + at, p->rgb[k]);
   lanes_store_indices(tile->count + at, p->count);
-  if (!wants_all)
+  if (wants == CONIC_GAUSSIAN_COLORS)
     return;
   lanes_store(tile->sum + at, p->sum);
   lanes_store(tile->sum_of_z + at, p->sum_of_z);
+  if (wants != CONIC_GAUSSIAN_ALL)
+    return;
   lanes_store(tile->inverse_z + at, p->inverse_z);
   lanes_store(tile->median_z + at, p->median_z);
   lanes_store(tile->heaviest + at, p->heaviest);
@@ -80,14 +84,12 @@ CONIC_INLINE void put_pixels(conic_gaussian_tile *tile, const pixels *p, size_t 
   lanes_store_indices(tile->last + at, p->last);
 }
 
-/* What is wanted beside colour. */
+/* What is wanted beside colour and depth. */
 CONIC_INLINE void composite_planes_in_lanes(const scene *s, const response *r, lanes_mask goes, lanes w, lanes after,
                                             pixels *p) {
   lanes_mask crosses = goes & lanes_less(lanes_of(0.5f), p->T);
   if (!s->list->rules->has_late_median)
     crosses = crosses & lanes_at_least(lanes_of(0.5f), after);
-  p->sum = p->sum + lanes_keep(goes, w);
-  p->sum_of_z = p->sum_of_z + lanes_keep(goes, w * r->z);
   p->inverse_z = p->inverse_z + lanes_keep(goes, w / r->z);
   p->median_z = lanes_select(crosses, r->z, p->median_z);
   lanes_mask is_heavier = goes & lanes_less(p->heaviest, w);
@@ -98,7 +100,7 @@ CONIC_INLINE void composite_planes_in_lanes(const scene *s, const response *r, l
     p->normal[k] = p->normal[k] + lanes_keep(goes, w * r->normal[k]);
 }
 
-CONIC_INLINE void composite_lanes(const scene *s, const response *r, pixels *p, int wants_all) {
+CONIC_INLINE void composite_lanes(const scene *s, const response *r, pixels *p, int wants) {
   lanes_mask covered = r->covered & p->goes_on;
   if (conic_gaussian_list_surface(s->list, 0))
     covered = covered & lanes_less(r->z, p->surface_z);
@@ -108,7 +110,11 @@ CONIC_INLINE void composite_lanes(const scene *s, const response *r, pixels *p, 
   p->goes_on = p->goes_on & lanes_not(covered & ends);
   for (int k = 0; k < 3; k++)
     p->rgb[k] = p->rgb[k] + lanes_keep(goes, w * r->color[k]);
-  if (wants_all)
+  if (wants != CONIC_GAUSSIAN_COLORS) {
+    p->sum = p->sum + lanes_keep(goes, w);
+    p->sum_of_z = p->sum_of_z + lanes_keep(goes, w * r->z);
+  }
+  if (wants == CONIC_GAUSSIAN_ALL)
     composite_planes_in_lanes(s, r, goes, w, after, p);
   p->count = lanes_increment(goes, p->count);
   p->T = lanes_select(goes, after, p->T);

@@ -203,15 +203,15 @@ CONIC_INLINE void sort_meetings(meetings *m, size_t first) {
   mend_order(m, n);
 }
 
-CONIC_INLINE response response_in_order(const scene *s, const meetings *m, index_lanes which, int wants_all) {
+CONIC_INLINE response response_in_order(const scene *s, const meetings *m, index_lanes which, int wants) {
   const conic_gaussian_list *list = s->list;
   const index_lanes at = which * (uint32_t)(sizeof(look) / sizeof(float));
   response to = {.alpha = lanes_gather(m->alpha[0], at_pixels(which))};
   for (uint32_t k = 0; k < 3; k++)
     to.color[k] = lanes_gather(m->looks[0].color, at + k);
-  if (wants_all || conic_gaussian_list_surface(list, 0))
+  if (wants != CONIC_GAUSSIAN_COLORS || conic_gaussian_list_surface(list, 0))
     to.z = lanes_gather(m->z[0], at_pixels(which));
-  if (!wants_all)
+  if (wants != CONIC_GAUSSIAN_ALL)
     return to;
   for (int lane = 0; lane < CONIC_LANES; lane++) {
     const uint32_t footprint = m->looks[which[lane]].footprint;
@@ -223,7 +223,7 @@ CONIC_INLINE response response_in_order(const scene *s, const meetings *m, index
 }
 
 /* Composites what lies before `bound`, as far as keys tell, all of infinity; the rest waits. */
-CONIC_INLINE void composite_before(const scene *s, meetings *m, float bound, pixels *p, int wants_all) {
+CONIC_INLINE void composite_before(const scene *s, meetings *m, float bound, pixels *p, int wants) {
   const float border = key_border(&m->by, bound);
   const lanes infinity = lanes_of(__builtin_inff()),
               key_of_bound = lanes_of(bound < __builtin_inff() ? least_key_at(&m->by, border) : bound);
@@ -235,9 +235,9 @@ CONIC_INLINE void composite_before(const scene *s, meetings *m, float bound, pix
     if (!lanes_any(is_there))
       break;
     if (lanes_any(is_before & is_there)) {
-      response to = response_in_order(s, m, lanes_to_bits(key) & m->by.numbers, wants_all);
+      response to = response_in_order(s, m, lanes_to_bits(key) & m->by.numbers, wants);
       to.covered = is_there & is_before;
-      composite_lanes(s, &to, p, wants_all);
+      composite_lanes(s, &to, p, wants);
     }
     is_there = is_there & lanes_not(is_before);
     if (lanes_any(is_there))
@@ -260,10 +260,10 @@ static void find_bounds(const conic_gaussian_list *list, conic_gaussian_shape sh
 
 /* Batch by batch, as far as nothing nearer can follow. */
 CONIC_INLINE void composite_rays_in_vector(const scene *s, meetings *m, size_t pixel, conic_gaussian_shape shape,
-                                           int wants_all) {
+                                           int wants) {
   const conic_gaussian_list *list = s->list;
   const int block = (int)(pixel / CONIC_GAUSSIAN_BLOCK_PIXELS);
-  pixels p = take_pixels(s, ~0u, pixel, wants_all);
+  pixels p = take_pixels(s, ~0u, pixel, wants);
   uint32_t listed[BATCH + CONIC_LANES];
   m->n = m->n_waiting = 0;
   m->nearest = lanes_of(__builtin_inff());
@@ -277,34 +277,36 @@ CONIC_INLINE void composite_rays_in_vector(const scene *s, meetings *m, size_t p
     if (end < list->n && !lanes_any(p.goes_on & lanes_less(m->nearest, lanes_of(bound))))
       continue;
     sort_meetings(m, n_sorted);
-    composite_before(s, m, bound, &p, wants_all);
+    composite_before(s, m, bound, &p, wants);
     n_sorted = m->n;
   }
-  put_pixels(s->tile, &p, pixel, wants_all);
+  put_pixels(s->tile, &p, pixel, wants);
 }
 
 CONIC_INLINE void composite_rays_block_by_block(const conic_gaussian_list *list, conic_gaussian_tile *tile,
-                                                conic_gaussian_shape shape, int wants_all) {
+                                                conic_gaussian_shape shape, int wants) {
   const scene s = scene_of(list, tile);
   meetings m = meetings_in_room(list);
   find_bounds(list, shape, &m);
   for (size_t pixel = 0; pixel < CONIC_GAUSSIAN_TILE_PIXELS; pixel += CONIC_LANES)
-    composite_rays_in_vector(&s, &m, pixel, shape, wants_all);
+    composite_rays_in_vector(&s, &m, pixel, shape, wants);
 }
 
 static void composite_rays_in_lanes(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
-  if (list->wants_all)
-    composite_rays_block_by_block(list, tile, CONIC_SHAPE_RAY, 1);
+  if (list->wants == CONIC_GAUSSIAN_ALL)
+    composite_rays_block_by_block(list, tile, CONIC_SHAPE_RAY, CONIC_GAUSSIAN_ALL);
+  else if (list->wants == CONIC_GAUSSIAN_DEPTHS)
+    composite_rays_block_by_block(list, tile, CONIC_SHAPE_RAY, CONIC_GAUSSIAN_DEPTHS);
   else
-    composite_rays_block_by_block(list, tile, CONIC_SHAPE_RAY, 0);
+    composite_rays_block_by_block(list, tile, CONIC_SHAPE_RAY, CONIC_GAUSSIAN_COLORS);
 }
 
 static void composite_filtered_in_lanes(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
-  composite_rays_block_by_block(list, tile, CONIC_SHAPE_FILTERED, list->wants_all);
+  composite_rays_block_by_block(list, tile, CONIC_SHAPE_FILTERED, list->wants);
 }
 
 static void composite_sights_in_lanes(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
-  composite_rays_block_by_block(list, tile, CONIC_SHAPE_SIGHT, list->wants_all);
+  composite_rays_block_by_block(list, tile, CONIC_SHAPE_SIGHT, list->wants);
 }
 
 #endif
