@@ -88,6 +88,9 @@ static conic_status set_up_all(frame *f) {
     is_done &= (f->normals = conic_memory_allocate(f->context, count, sizeof *f->normals)) != NULL;
   if (!is_done)
     return CONIC_ERROR_MEMORY;
+  conic_memory_prefer_large_pages(f->context, f->footprints, count * sizeof *f->footprints);
+  if (f->rays)
+    conic_memory_prefer_large_pages(f->context, f->rays, count * sizeof *f->rays);
   conic_status status = conic_parallel_runs(f->context, "setup", 0.0, 0.3, f->n_runs, 64, set_up_run, f);
   for (size_t run = 0; run < f->n_runs; run++) {
     f->n += f->n_of_run[run];
