@@ -88,7 +88,7 @@ static void take_dot(const bounded at[2], oracle_meeting *m) {
 
 /* Of o·e^x, where the falloff falls to zero at the border; each step of it is rounded. */
 static double fall_to_zero(const oracle_limits *limits, double opacity, double alpha, double side) {
-  const double end = opacity * limits->fall_end, rounded = 4.0 * ORACLE_FLOAT_UNIT * (alpha + end);
+  const double end = opacity * limits->fall_end, rounded = 6.0 * ORACLE_FLOAT_UNIT * (alpha + end);
   return end > 0.0 ? (alpha - end + side * rounded) * limits->fall_factor : alpha;
 }
 

@@ -2,6 +2,7 @@
  * friendly and hostile, by tiles and by pixels, with the host's memory and copies of it, all tiles at a time and few.
  */
 #include "conic/opencl.h"
+#include "core/splats/gaussian_profile.h"
 #include "opencl/opencl_renderer.h"
 #include "tests/support/check.h"
 #include "tests/support/gaussian_picture.h"
@@ -45,7 +46,7 @@ static conic_gaussian_planes spoiled_planes(const conic_camera *camera) {
 static void compare_ways(const desk *d, const conic_gaussians *scene, const conic_camera *given, int profile,
                          int n_ways, const char *what) {
   conic_camera centered = *given, *camera = &centered;
-  if (profile == CONIC_PROFILE_INRIA_2023 || profile == CONIC_PROFILE_2DGS_2024) /* which draw no other */
+  if (conic_profile_row_of((conic_gaussian_profile)profile)->takes_middle) /* which draw no other */
     centered.cx = 0.5 * given->width;
   conic_gaussian_planes p = picture_planes(camera);
   conic_gaussian_options options;

@@ -2,6 +2,7 @@
  * formulas and keeps to the decisions that conic explain tells of each pixel. */
 #include "conic/gaussian_gradient.h"
 #include "conic/gaussian_oracle.h"
+#include "core/splats/gaussian_profile.h"
 #include "tests/support/check.h"
 #include "tests/support/gaussian_fixture.h"
 
@@ -22,8 +23,12 @@ static int is_named(const frozen *f) {
   return f->profile != CONIC_PROFILE_EXACT;
 }
 
+static const conic_profile_row *row_of(const frozen *f) {
+  return conic_profile_row_of(f->profile);
+}
+
 static double dilation_of(const frozen *f) {
-  return f->profile == CONIC_PROFILE_EXACT || f->profile == CONIC_PROFILE_KHR_2026 ? 0.0 : 0.3;
+  return row_of(f)->dilation;
 }
 
 /* Of x, y, z of unit length, as the usual tables have them. */
@@ -111,7 +116,7 @@ static double clamped_slope(const frozen *f, const double *c, int axis, int side
   const double size = axis ? HEIGHT : WIDTH, focal = c[12 + axis], center = c[14 + axis];
   if (side == 0)
     return inside;
-  if (f->profile == CONIC_PROFILE_INRIA_2023)
+  if (row_of(f)->takes_middle)
     return side * 0.65 * size / focal;
   return side < 0 ? -(center + 0.15 * size) / focal : (size - center + 0.15 * size) / focal;
 }
@@ -144,7 +149,7 @@ static void see_ellipse(frozen *f, const double *g, const double *c, int i, int 
   covariance_by_turning(f, i, g, c, 2.0, spread);
   for (int axis = 0; axis < 2; axis++) {
     const double slope = s->mean[axis] / z,
-                 center = f->profile == CONIC_PROFILE_INRIA_2023 ? 0.5 * (axis ? HEIGHT : WIDTH) : c[14 + axis];
+                 center = row_of(f)->takes_middle ? 0.5 * (axis ? HEIGHT : WIDTH) : c[14 + axis];
     s->place[axis] = c[12 + axis] * slope + center;
     if (is_first && h > 0.0)
       f->slope_side[i][axis] = slope > clamped_slope(f, c, axis, 1, 0.0)    ? 1
@@ -164,8 +169,8 @@ static void see_ellipse(frozen *f, const double *g, const double *c, int i, int 
   s->form[0] = cov[1][1] / det;
   s->form[1] = -cov[0][1] / det;
   s->form[2] = cov[0][0] / det;
-  const double least = f->profile == CONIC_PROFILE_GSPLAT_1_6_AA ? 2.5e-5 : 0.0;
-  if (f->profile != CONIC_PROFILE_GSPLAT_1_6_AA && f->profile != CONIC_PROFILE_GSPLAT_1_5_AA)
+  const double least = row_of(f)->compensation_least;
+  if (least < 0.0)
     return;
   if (is_first)
     f->is_least[i] = bare / det < least;
@@ -177,7 +182,7 @@ static void see_gaussian(frozen *f, const double *p, int i, int is_first, seen *
   for (int k = 0; k < 3; k++)
     s->mean[k] = c[4 * k] * g[0] + c[4 * k + 1] * g[1] + c[4 * k + 2] * g[2] + c[4 * k + 3];
   if (is_first) /* inria's program takes what is nearly a unit as it is */
-    f->length[i] = f->profile == CONIC_PROFILE_INRIA_2023 ? quaternion_length(g + TURN) : 1.0;
+    f->length[i] = row_of(f)->takes_rotation_as_is ? quaternion_length(g + TURN) : 1.0;
   s->opacity = g[OPACITY];
   s->z = s->mean[2];
   see_color(f, g, c, i, is_first, s);
@@ -202,7 +207,6 @@ static double along_ray(const seen *s, const double *c, double x, double y, doub
 }
 
 static double frozen_alpha(const frozen *f, const seen *s, const double *c, int pixel, int k, double *z) {
-  static const double most[CONIC_N_GAUSSIAN_PROFILES] = {0.99, 0.99, 0.999, 0.999, 0.99, 0.99, 0.99, 0.99, 1.0};
   const double x = pixel % WIDTH + 0.5, y = pixel / WIDTH + 0.5, dx = x - s->place[0], dy = y - s->place[1];
   double q;
   *z = s->z;
@@ -210,7 +214,7 @@ static double frozen_alpha(const frozen *f, const seen *s, const double *c, int 
     q = along_ray(s, c, x, y, z);
   else
     q = s->form[0] * dx * dx + 2.0 * s->form[1] * dx * dy + s->form[2] * dy * dy;
-  return f->is_most[pixel][k] ? most[f->profile] : s->opacity * exp(-0.5 * q);
+  return f->is_most[pixel][k] ? row_of(f)->alpha_most : s->opacity * exp(-0.5 * q);
 }
 
 static double loss_of(frozen *f, const double *p, int is_first) {
@@ -256,7 +260,7 @@ static conic_gaussians clamped_scene(conic_context *context, conic_gaussian_prof
     for (int k = 0; k < 3; k++) {
       scene.position[k][i] *= k == 2 ? 0.5f : 0.3f;
       scene.scale[k][i] += 0.1f;
-      scene.rotation[k][i] *= profile == CONIC_PROFILE_INRIA_2023 ? 1.0f : 1.5f;
+      scene.rotation[k][i] *= conic_profile_row_of(profile)->takes_rotation_as_is ? 1.0f : 1.5f;
     }
   scene.opacity[0] = 1.0f;
   for (int k = 0; k < 3; k++)
