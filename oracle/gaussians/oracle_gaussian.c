@@ -19,7 +19,9 @@ double conic_oracle_quaternion(const conic_profile_row *rules, const conic_gauss
     q[k] = (double)set->rotation[k][i];
     length += q[k] * q[k];
   }
-  length = rules->takes_rotation_as_is && fabs(length - 1.0) < UNIT_SLACK ? 1.0 : sqrt(length);
+  length = rules->takes_rotation_as_is > 1 || (rules->takes_rotation_as_is && fabs(length - 1.0) < UNIT_SLACK)
+               ? 1.0
+               : sqrt(length);
   for (int k = 0; k < 4; k++)
     q[k] /= length;
   return length;

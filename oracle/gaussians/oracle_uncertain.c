@@ -57,7 +57,8 @@ static int bound_axes(const oracle_doubting *d, size_t i, bounded_frame *f) {
   }
   if (!(squares > 0.0) || !oracle_is_finite(squares))
     return 0;
-  bound_rotation(q, d->view->rules->takes_rotation_as_is && fabs(squares - 1.0) < 0x1p-20, f->unit, f->world);
+  const int as_is = d->view->rules->takes_rotation_as_is;
+  bound_rotation(q, as_is > 1 || (as_is && fabs(squares - 1.0) < 0x1p-20), f->unit, f->world);
   for (int k = 0; k < 3; k++) {
     f->scale[k] = d->set->scale[k] ? (double)d->set->scale[k][i] : 0.0;
     if (!(f->scale[k] >= 0.0) || !oracle_is_finite(f->scale[k]))
@@ -197,7 +198,7 @@ static void reach_of_ellipse(const bounded variance[2], double q, oracle_uncerta
 }
 
 /* What another program's order of forming the covariance adds: xx, xy, yy. */
-static void loosen_covariance(const bounded_frame *f, const double gain[2], const double slope[2],
+static void loosen_covariance(const bounded_frame *f, double stored, const double gain[2], const double slope[2],
                               bounded covariance[3]) {
   double squares[3] = {0.0, 0.0, 0.0};
   for (int k = 0; k < 3; k++) {
@@ -208,7 +209,7 @@ static void loosen_covariance(const bounded_frame *f, const double gain[2], cons
     squares[2] += y * y;
   }
   for (int k = 0; k < 3; k++)
-    covariance[k].off += n_covariance_roundings * f->unit * squares[k];
+    covariance[k].off += (n_covariance_roundings * f->unit + stored) * squares[k];
 }
 
 static bounded determinant_in_float(const bounded c[3], double unit) {
@@ -333,7 +334,7 @@ static int bound_ellipse(const oracle_doubting *d, const bounded_frame *f, oracl
   bounded bare = bounded_dot(area, area, unit), trace = bounded_add(c[0], c[2], unit);
   bounded wide = bounded_add(bounded_add(bare, bounded_scale(h, trace, unit), unit), bounded_of(h * h), unit);
   if (d->model->is_setup_in_float) {
-    loosen_covariance(f, gain, slope, c);
+    loosen_covariance(f, rules->covariance_unit, gain, slope, c);
     bare.off += determinant_in_float(c, unit).off;
   }
   c[0] = bounded_add(c[0], bounded_of(h), unit);
