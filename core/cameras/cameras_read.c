@@ -163,7 +163,8 @@ static conic_status read_camera_bytes(conic_camera_list *list, const unsigned ch
   conic_status status = conic_text_byte_order_mark(list->context, list->name, bytes, n_bytes, &n_mark);
   if (status != CONIC_OK)
     return status;
-  bytes += n_mark;
+  if (n_mark) /* of an empty file there are no bytes to move on from */
+    bytes += n_mark;
   n_bytes -= n_mark;
   switch (kind_of_content(bytes, n_bytes)) {
   case CONIC_CAMERA_FILE_TRANSFORMS:
