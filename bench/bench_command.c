@@ -169,7 +169,7 @@ static int run_bench(cli_session *session, int argc, char **argv) {
   if (exit_code == CLI_DONE)
     exit_code = cli_check_outputs(session, NULL, 0);
   if (exit_code == CLI_DONE && job->is_kernels)
-    exit_code = cli_cross_all(CONIC_CROSS_SEED, 1) ? CLI_DIFFERENT : CLI_DONE;
+    exit_code = cli_cross_all(CONIC_CROSS_SEED, job->is_quick ? 1 : 7) ? CLI_DIFFERENT : CLI_DONE;
   else if (exit_code == CLI_DONE)
     exit_code = cli_session_open(session);
   if (exit_code == CLI_DONE && !job->is_kernels)

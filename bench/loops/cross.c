@@ -4,7 +4,8 @@
 static int (*const families[])(cross *c) = {cli_cross_splats, cli_cross_triangles, cli_cross_texture, cli_cross_surface,
                                             cli_cross_octree};
 
-int cli_cross_all(uint64_t seed, int is_bench) {
+int cli_cross_all(uint64_t seed, int n_timed) {
+  const int is_bench = n_timed > 0;
   cross c = {.seed = seed, .is_bench = is_bench};
   if (is_bench)
     printf("%-15s  %-15s  %-6s  %22s  %8s\n", "slot", "variant", "isa", "time", "scalar");
@@ -14,6 +15,7 @@ int cli_cross_all(uint64_t seed, int is_bench) {
     cross_tables *tables = &c.tables[c.n_tables];
     if (conic_isa_is_here((conic_isa)isa)) {
       tables->isa = (conic_isa)isa;
+      tables->n_timed = n_timed;
       conic_raster_loops_init(&tables->raster, tables->isa);
       conic_surface_loops_init(&tables->surface, tables->isa);
       conic_octree_loops_init(&tables->octree, tables->isa);

@@ -11,6 +11,7 @@
 /* The tables of all families for one instruction set. */
 typedef struct cross_tables {
   conic_isa isa;
+  int n_timed; /* the least of so many times is taken */
   conic_raster_loops raster;
   conic_surface_loops surface;
   conic_octree_loops octree;
@@ -121,9 +122,9 @@ static inline double cross_seconds(void) {
 
 /* Seconds of one run: the shortest of a few times a few, since every run does the same again. */
 static inline double cross_time(cross_run *run, const cross_tables *tables, cross_desk *desk) {
-  enum { RUNS = 4, TIMES = 7 };
+  enum { RUNS = 4 };
   double least = 1e30;
-  for (int i = 0; i < TIMES; i++) {
+  for (int i = 0; i < tables->n_timed; i++) {
     double begin = cross_seconds();
     for (int k = 0; k < RUNS; k++)
       run(tables, desk);

@@ -5,6 +5,6 @@
 
 #define CONIC_CROSS_SEED 20260718
 
-/* Prints the seed and compares, or compares less and prints times, which end where something failed. Returns how much
- * failed. */
-int cli_cross_all(uint64_t seed, int is_bench);
+/* Prints the seed and compares; or, n_timed above 0, compares less and prints the least of so many times, which ends
+ * where something failed. Returns how much failed. */
+int cli_cross_all(uint64_t seed, int n_timed);

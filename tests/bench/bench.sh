@@ -95,7 +95,7 @@ if command -v python3 > /dev/null; then
 fi
 
 # The kernels alone
-run 0 bench --kernels
+run 0 bench --kernels --quick
 for family in project visibility 'triangles draw' texture 'surface plane' cover; do
   grep -qE "^$family .* scalar .* 1\.00 x$" out || fail "bench --kernels: no $family"
 done

@@ -8,6 +8,7 @@
 
 int main(int argc, char **argv) {
   int is_bench = argc > 2 && strcmp(argv[2], "--bench") == 0;
-  check_failures = cli_cross_all(argc > 2 && !is_bench ? strtoull(argv[2], NULL, 10) : CONIC_CROSS_SEED, is_bench);
+  check_failures =
+      cli_cross_all(argc > 2 && !is_bench ? strtoull(argv[2], NULL, 10) : CONIC_CROSS_SEED, is_bench ? 7 : 0);
   return check_result();
 }

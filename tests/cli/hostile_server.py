@@ -544,7 +544,7 @@ def main():
     global FILE
     os.environ["no_proxy"] = "127.0.0.1"
     with tempfile.TemporaryDirectory() as folder:
-        for arguments in (["make", "knot", "-n", "250k", "-o", "knot.ply"],
+        for arguments in (["make", "knot", "-n", "80k", "-o", "knot.ply"],
                           ["layer", "knot.ply", "-o", "knot.lpc", "--cloud-size", "64"]):
             code, lines, _ = run_conic(arguments, folder)
             if code:
