@@ -177,10 +177,11 @@ static void find_means(const conic_layers_standing *s, const conic_layers_plan *
 static void code_means(const conic_layers_standing *s, circle *c, conic_layers_sample *record) {
   uint32_t steps[3];
   float normal[3];
+  const double length = conic_length(c->normal), scale = length < 1e30 ? 1.0 : 1.0 / length; /* floats end soon after */
   for (int axis = 0; axis < 3; axis++) {
     steps[axis] = (uint32_t)(c->at[axis] + 0.5);
     c->at[axis] = (double)steps[axis];
-    normal[axis] = (float)c->normal[axis];
+    normal[axis] = (float)(c->normal[axis] * scale);
     record->color[axis] = (uint8_t)((conic_srgb_code(s->thresholds, (float)c->color[axis]) & ~3) | 2);
   }
   record->key = conic_layers_key(steps[0], steps[1], steps[2]);
