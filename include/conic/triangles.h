@@ -128,9 +128,9 @@ CONIC_API conic_status conic_triangles_texture(conic_context *context, conic_tri
 CONIC_API conic_status conic_triangles_smooth(conic_context *context, conic_triangles *triangles);
 
 /* Gives every corner the mean normal, weighted by area, of the faces around it that hang together with its own by edges
- * of no more than the angle (0 to 90). So these edges look round, and sharper ones stay sharp. Corners at one place
- * belong together, whichever vertices they name. Errors: ARGUMENT, MEMORY, CANCELLED; the normals are then as they
- * were. */
+ * of no more than the angle (0 to 90). So these edges look round, and sharper ones stay sharp, but for those of rounds
+ * and noise (docs/reference/picture.md). Corners at one place belong together, whichever vertices they name. Errors:
+ * ARGUMENT, MEMORY, CANCELLED; the normals are then as they were. */
 CONIC_API conic_status conic_triangles_crease(conic_context *context, conic_triangles *triangles, double angle_deg);
 
 /* The axis-aligned box of the finite vertices that triangles use, in world coordinates. Returns how many corners are
