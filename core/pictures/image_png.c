@@ -2,19 +2,99 @@
 
 #include "core/base/byte_order.h"
 #include "core/files/disk.h"
+#include "core/files/file.h"
+#include "core/image/image_common.h"
 #include "core/pictures/image_foreign.h"
+#include "core/pictures/image_samples.h"
+#include "core/pictures/picture_shot.h"
+#include "core/pictures/png_strips.h"
+
+/* --- writing --- */
+
+/* Completes a chunk, whose n bytes of data stand in their place, and writes it. The stream remembers what it refuses.
+ */
+static void put_chunk(FILE *to, unsigned char *chunk, const char *name, size_t n) {
+  fwrite(chunk, 1, conic_png_close_chunk(chunk, name, n), to);
+}
+
+/* 8 bits of R, G, B and A, sRGB-encoded and marked so, also for those who know chunks of old alone. */
+static void write_head(const conic_image *image, FILE *to) {
+  static const uint32_t chromaticities[] = {31270, 32900, 64000, 33000, 30000, 60000, 15000, 6000};
+  unsigned char chunk[64], *data = chunk + CONIC_PNG_DATA;
+  fwrite("\x89PNG\r\n\x1a\n", 1, 8, to);
+  conic_store_big_32(data, (uint32_t)image->width);
+  conic_store_big_32(data + 4, (uint32_t)image->height);
+  memcpy(data + 8, "\x08\x06\0\0\0", 5);
+  put_chunk(to, chunk, "IHDR", 13);
+  conic_store_big_32(data, 45455);
+  put_chunk(to, chunk, "gAMA", 4);
+  data[0] = 0;
+  put_chunk(to, chunk, "sRGB", 1);
+  for (size_t i = 0; i < 8; i++)
+    conic_store_big_32(data + 4 * i, chromaticities[i]);
+  put_chunk(to, chunk, "cHRM", 32);
+}
+
+/* Latin-1 where it is that, else UTF-8, without language and translation. */
+static conic_status write_shot(conic_context *context, const char *shot, FILE *to) {
+  size_t n_key = sizeof CONIC_SHOT_KEYWORD, n = strlen(shot), n_blank = 0;
+  for (const char *c = shot; *c; c++)
+    n_blank = (unsigned char)*c < 0x80 ? n_blank : 4;
+  unsigned char *chunk = conic_memory_allocate(context, n_key + n_blank + n + 12, 1), *data = chunk + CONIC_PNG_DATA;
+  if (!chunk)
+    return CONIC_ERROR_MEMORY;
+  memcpy(data, CONIC_SHOT_KEYWORD, n_key);
+  memset(data + n_key, 0, n_blank);
+  memcpy(data + n_key + n_blank, shot, n);
+  put_chunk(to, chunk, n_blank ? "iTXt" : "tEXt", n_key + n_blank + n);
+  conic_memory_release(context, chunk);
+  return CONIC_OK;
+}
+
+static conic_status write_image(conic_context *context, const conic_image *image, conic_tone tone, FILE *to) {
+  unsigned char end[12];
+  write_head(image, to);
+  conic_status status = image->shot ? write_shot(context, image->shot, to) : CONIC_OK;
+  if (status == CONIC_OK)
+    status = conic_png_write_strips(context, image, tone, to);
+  if (status == CONIC_OK)
+    put_chunk(to, end, "IEND", 0);
+  return status;
+}
+
+conic_status conic_png_check(conic_context *context, const char *path, unsigned planes) {
+  if (!(planes & 1u << CONIC_PLANE_RGBA))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: cannot write: the format holds rgba, which the image has not",
+                      path);
+  return CONIC_OK;
+}
+
+conic_status conic_png_write(conic_context *context, const char *path, const conic_image *image, conic_tone tone) {
+  conic_output *output;
+  conic_status status = conic_png_check(context, path, conic_image_planes(image));
+  if (status == CONIC_OK)
+    status = conic_output_open(context, path, &output);
+  if (status != CONIC_OK)
+    return status;
+  status = write_image(context, image, tone, conic_output_stream(output));
+  if (status == CONIC_OK)
+    return conic_output_commit(output); /* which also says what is wrong with the stream */
+  conic_output_abandon(output);
+  return status;
+}
+
+conic_status conic_png_write_to(conic_context *context, FILE *stream, const conic_image *image) {
+  conic_status status = conic_png_check(context, "a picture", conic_image_planes(image));
+  return status == CONIC_OK ? write_image(context, image, CONIC_TONE_SRGB, stream) : status;
+}
+
+/* --- reading --- */
 
 #if CONIC_HAVE_PNG
 
 #include <png.h>
 
-#include "core/files/file.h"
-#include "core/image/image_common.h"
-#include "core/pictures/image_samples.h"
-#include "core/pictures/picture_shot.h"
-#include "core/pictures/png_strips.h"
-
-/* A file being read or written. libpng leaves by longjmp: memory to release is noted here, not in variables. */
+/* A file being read. libpng leaves by longjmp: memory to release is noted here, not in variables. */
 typedef struct png_work {
   conic_context *context;
   const char *path;
@@ -24,10 +104,8 @@ typedef struct png_work {
   int width, height;
   conic_samples_layout layout;
   unsigned char *samples;
-  int is_raw;               /* codes are read as they are */
-  const conic_image *image; /* that is written */
-  char message[100];        /* libpng's */
-  conic_status status;
+  int is_raw;        /* codes are read as they are */
+  char message[100]; /* libpng's */
 } png_work;
 
 static void keep_error(png_structp png, png_const_charp message) {
@@ -45,109 +123,6 @@ static void keep_quiet(png_structp png, png_const_charp message) {
 static size_t row_bytes(const png_work *work) {
   return (size_t)work->width * (size_t)work->layout.n_channels * (size_t)work->layout.sample_bytes;
 }
-
-/* --- writing --- */
-
-static void write_png(png_structp png, png_bytep bytes, size_t n_bytes) {
-  png_work *work = png_get_io_ptr(png);
-  if (fwrite(bytes, 1, n_bytes, work->file) != n_bytes)
-    png_error(png, "the file cannot be written");
-}
-
-static void flush_nothing(png_structp png) {
-  (void)png;
-}
-
-/* Latin-1 where it is that, else UTF-8; packed where it is long. */
-static void write_shot(png_work *work) {
-  enum { LONG_TEXT = 2048 };
-  int is_long = strlen(work->image->shot) > LONG_TEXT, is_ascii = 1;
-  for (const char *c = work->image->shot; *c; c++)
-    is_ascii &= (unsigned char)*c < 0x80;
-  png_text text;
-  memset(&text, 0, sizeof text);
-  text.compression = is_ascii  ? is_long ? PNG_TEXT_COMPRESSION_zTXt : PNG_TEXT_COMPRESSION_NONE
-                     : is_long ? PNG_ITXT_COMPRESSION_zTXt
-                               : PNG_ITXT_COMPRESSION_NONE;
-  text.key = (png_charp)CONIC_SHOT_KEYWORD;
-  text.text = (png_charp)work->image->shot;
-  text.text_length = is_ascii ? strlen(work->image->shot) : 0;
-  png_set_text(work->png, work->info, &text, 1);
-}
-
-/* Returns 0 where libpng or the caller gave up. */
-static int encode(png_work *work) {
-  if (setjmp(png_jmpbuf(work->png)))
-    return 0;
-  png_set_write_fn(work->png, work, write_png, flush_nothing);
-  png_set_IHDR(work->png, work->info, (png_uint_32)work->width, (png_uint_32)work->height, 8, PNG_COLOR_TYPE_RGBA,
-               PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-  png_set_sRGB_gAMA_and_cHRM(work->png, work->info, PNG_sRGB_INTENT_PERCEPTUAL);
-  if (work->image->shot)
-    write_shot(work);
-  png_write_info(work->png, work->info);
-  work->status = conic_png_write_strips(work->context, work->image, work->layout.tone, work->file);
-  if (work->status == CONIC_OK)
-    png_write_chunk(work->png, (png_const_bytep) "IEND", NULL, 0);
-  return work->status == CONIC_OK;
-}
-
-static conic_status write_samples(png_work *work) {
-  conic_output *output;
-  if (work->file) {
-    int is_done = encode(work);
-    return work->status != CONIC_OK || is_done
-               ? work->status
-               : conic_fail(work->context, CONIC_ERROR_MEMORY, "%s: cannot write: %s", work->path, work->message);
-  }
-  conic_status status = conic_output_open(work->context, work->path, &output);
-  if (status != CONIC_OK)
-    return status;
-  work->file = conic_output_stream(output);
-  if (encode(work) || ferror(work->file))
-    return conic_output_commit(output); /* which also says what is wrong with the stream */
-  conic_output_abandon(output);
-  if (work->status != CONIC_OK)
-    return work->status;
-  return conic_fail(work->context, CONIC_ERROR_MEMORY, "%s: cannot write: %s", work->path, work->message);
-}
-
-conic_status conic_png_check(conic_context *context, const char *path, unsigned planes) {
-  if (!(planes & 1u << CONIC_PLANE_RGBA))
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: cannot write: the format holds rgba, which the image has not",
-                      path);
-  return CONIC_OK;
-}
-
-static conic_status encode_image(conic_context *context, const char *path, FILE *stream, const conic_image *image,
-                                 conic_tone tone) {
-  png_work work = {.context = context,
-                   .path = path,
-                   .file = stream,
-                   .width = image->width,
-                   .height = image->height,
-                   .image = image,
-                   .layout = {.tone = tone}};
-  conic_status status = conic_png_check(context, path, conic_image_planes(image));
-  if (status != CONIC_OK)
-    return status;
-  work.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &work, keep_error, keep_quiet);
-  work.info = work.png ? png_create_info_struct(work.png) : NULL;
-  status = work.info ? write_samples(&work)
-                     : conic_fail(context, CONIC_ERROR_MEMORY, "%s: cannot write: out of memory", path);
-  png_destroy_write_struct(&work.png, &work.info);
-  return status;
-}
-
-conic_status conic_png_write(conic_context *context, const char *path, const conic_image *image, conic_tone tone) {
-  return encode_image(context, path, NULL, image, tone);
-}
-
-conic_status conic_png_write_to(conic_context *context, FILE *stream, const conic_image *image) {
-  return encode_image(context, "a picture", stream, image, CONIC_TONE_SRGB);
-}
-
-/* --- reading --- */
 
 static void read_png(png_structp png, png_bytep bytes, size_t n_bytes) {
   png_work *work = png_get_io_ptr(png);
@@ -250,22 +225,8 @@ conic_status conic_png_read_codes(conic_context *context, const char *path, coni
 
 #else
 
-conic_status conic_png_check(conic_context *context, const char *path, unsigned planes) {
-  return conic_foreign_check(context, path, "png", planes);
-}
-
-conic_status conic_png_write(conic_context *context, const char *path, const conic_image *image, conic_tone tone) {
-  return conic_foreign_write(context, path, "png", image, tone);
-}
-
 conic_status conic_png_read(conic_context *context, const char *path, conic_image *image) {
   return conic_foreign_read(context, path, image);
-}
-
-conic_status conic_png_write_to(conic_context *context, FILE *stream, const conic_image *image) {
-  (void)stream;
-  (void)image;
-  return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "pictures in a page need libpng, which this build lacks");
 }
 
 conic_status conic_png_read_codes(conic_context *context, const char *path, conic_image *image, unsigned *most_code) {

@@ -1,12 +1,14 @@
 #include "core/pictures/png_strips.h"
 
-#if CONIC_HAVE_PNG
-
-#include <zlib.h>
-
 #include "core/base/base.h"
 #include "core/base/byte_order.h"
+#include "core/files/zip.h"
 #include "core/pictures/image_samples.h"
+
+#if CONIC_HAVE_ZLIB || CONIC_HAVE_PNG /* which comes with zlib */
+#include <zlib.h>
+#define HAS_ZLIB 1
+#endif
 
 /* zlib's level: 1024² pixels of the lion take 12 ms so; all filters and level 6 make a file an eighth smaller in 64 ms,
  * no filter a third larger in 14 ms. */
@@ -19,21 +21,22 @@ enum { STRIP_BYTES = 1 << 17, LEAST_ROWS = 16 };
 /* So many strips, in so many bytes, are packed before their bytes are written. */
 enum { STRIPS_A_THREAD = 4, ROUND_BYTES = 1 << 25 };
 
-enum { FILTER_UP = 2, LENGTH_AND_NAME = 8, SUM = 4 };
+enum { FILTER_UP = 2, SUM = 4 };
 
 /* What begins zlib's format: a window of 32 KiB, the fastest level. */
 static const unsigned char zlib_head[2] = {0x78, 0x01};
 
 /* A strip at work. Its memory serves one after the other. */
 typedef struct png_strip {
+#ifdef HAS_ZLIB
   z_stream stream;
   int has_stream;
+#endif
   unsigned char *rows[2];  /* codes of a row and of the one above */
   unsigned char *filtered; /* all rows, each after its filter's number */
   unsigned char *chunk;    /* length, name, what is packed, and sum */
-  size_t n_chunk;
-  uint32_t adler; /* of what is filtered */
-  int is_packed;
+  size_t n_chunk;          /* 0: it could not be packed */
+  uint32_t adler;          /* of what is filtered */
 } png_strip;
 
 typedef struct png_strips {
@@ -45,12 +48,92 @@ typedef struct png_strips {
   png_strip *strips;
 } png_strips;
 
-/* Puts length, name and sum about n bytes that stand in their place; returns the bytes of the chunk. */
-static size_t close_chunk(unsigned char *chunk, size_t n) {
+#ifdef HAS_ZLIB
+
+static uint32_t sum_of(const unsigned char *bytes, size_t n) {
+  return (uint32_t)crc32(0, bytes, (uInt)n);
+}
+
+/* The bytes that n filtered ones become; 0: zlib fails. All but the last strip end with an empty block, so that the
+ * next begins with a byte. */
+static size_t pack_rows(png_strip *strip, size_t n, unsigned char *to, size_t room, int is_last) {
+  strip->stream.next_in = strip->filtered;
+  strip->stream.avail_in = (uInt)n;
+  strip->stream.next_out = to;
+  strip->stream.avail_out = (uInt)room;
+  int is_packed = deflateReset(&strip->stream) == Z_OK &&
+                  deflate(&strip->stream, is_last ? Z_FINISH : Z_SYNC_FLUSH) == (is_last ? Z_STREAM_END : Z_OK) &&
+                  strip->stream.avail_in == 0 && strip->stream.avail_out > 0;
+  return is_packed ? strip->stream.total_out : 0;
+}
+
+/* The most bytes that pack_rows makes of n; 0: zlib fails. */
+static size_t open_strip(png_strip *strip, size_t n) {
+  strip->has_stream = deflateInit2(&strip->stream, ZIP_LEVEL, Z_DEFLATED, -MAX_WBITS, ZIP_MEMORY, Z_FILTERED) == Z_OK;
+  return strip->has_stream ? deflateBound(&strip->stream, (uLong)n) : 0;
+}
+
+static void close_strip(png_strip *strip) {
+  if (strip->has_stream)
+    deflateEnd(&strip->stream);
+}
+
+#else
+
+enum { MOST_STORED = 65535, BLOCK_HEAD = 5 };
+
+static uint32_t sum_of(const unsigned char *bytes, size_t n) {
+  return conic_zip_sum(bytes, n);
+}
+
+/* Blocks that are stored: whether it is the last one, its length, and that inverted. */
+static size_t pack_rows(png_strip *strip, size_t n, unsigned char *to, size_t room, int is_last) {
+  unsigned char *at = to;
+  (void)room;
+  for (size_t done = 0, m; done < n; done += m, at += m) {
+    m = n - done < MOST_STORED ? n - done : MOST_STORED;
+    *at = is_last && done + m == n;
+    conic_store_bits(at + 1, 2, (uint32_t)m);
+    conic_store_bits(at + 3, 2, ~(uint32_t)m & 0xffff);
+    at += BLOCK_HEAD;
+    memcpy(at, strip->filtered + done, m);
+  }
+  return (size_t)(at - to);
+}
+
+static size_t open_strip(png_strip *strip, size_t n) {
+  (void)strip;
+  return n + BLOCK_HEAD * (n / MOST_STORED + 1);
+}
+
+static void close_strip(png_strip *strip) {
+  (void)strip;
+}
+
+enum { ADLER_BASE = 65521 };
+
+static uint32_t adler32(uint32_t sum, const unsigned char *bytes, size_t n) {
+  uint32_t a = sum & 0xffff, b = sum >> 16;
+  for (size_t i = 0; i < n; i++) {
+    a = (a + bytes[i]) % ADLER_BASE;
+    b = (b + a) % ADLER_BASE;
+  }
+  return b << 16 | a;
+}
+
+/* The sum of what has the first sum and then n bytes that have the second. */
+static uint32_t adler32_combine(uint32_t first, uint32_t second, long n) {
+  uint64_t a = first & 0xffff, b = (first >> 16) + (second >> 16) + (a + ADLER_BASE - 1) * ((uint64_t)n % ADLER_BASE);
+  return (uint32_t)(b % ADLER_BASE << 16 | (a + (second & 0xffff) + ADLER_BASE - 1) % ADLER_BASE);
+}
+
+#endif
+
+size_t conic_png_close_chunk(unsigned char *chunk, const char *name, size_t n) {
   conic_store_big_32(chunk, (uint32_t)n);
-  memcpy(chunk + 4, "IDAT", 4);
-  conic_store_big_32(chunk + LENGTH_AND_NAME + n, (uint32_t)crc32(0, chunk + 4, (uInt)(n + 4)));
-  return LENGTH_AND_NAME + n + SUM;
+  memcpy(chunk + 4, name, 4);
+  conic_store_big_32(chunk + CONIC_PNG_DATA + n, sum_of(chunk + 4, n + 4));
+  return CONIC_PNG_DATA + n + SUM;
 }
 
 static size_t rows_of(const png_strips *s, size_t i_strip) {
@@ -83,37 +166,31 @@ static void filter_strip(const png_strips *s, size_t i_strip, png_strip *strip) 
   }
 }
 
-/* All but the last end with an empty block, so that the next begins with a byte. */
 static void pack_strip(void *data, size_t i) {
   png_strips *s = data;
   png_strip *strip = &s->strips[i];
   size_t i_strip = s->first + i, n_bytes = rows_of(s, i_strip) * (s->row_bytes + 1), n_head = 0;
   int is_last = i_strip + 1 == s->n_strips;
   filter_strip(s, i_strip, strip);
-  strip->adler = (uint32_t)adler32(1, strip->filtered, (uInt)n_bytes);
+  strip->adler = (uint32_t)adler32(1, strip->filtered, (unsigned)n_bytes);
   if (i_strip == 0) {
-    memcpy(strip->chunk + LENGTH_AND_NAME, zlib_head, sizeof zlib_head);
+    memcpy(strip->chunk + CONIC_PNG_DATA, zlib_head, sizeof zlib_head);
     n_head = sizeof zlib_head;
   }
-  strip->stream.next_in = strip->filtered;
-  strip->stream.avail_in = (uInt)n_bytes;
-  strip->stream.next_out = strip->chunk + LENGTH_AND_NAME + n_head;
-  strip->stream.avail_out = (uInt)(s->chunk_room - LENGTH_AND_NAME - n_head - SUM);
-  strip->is_packed = deflateReset(&strip->stream) == Z_OK &&
-                     deflate(&strip->stream, is_last ? Z_FINISH : Z_SYNC_FLUSH) == (is_last ? Z_STREAM_END : Z_OK) &&
-                     strip->stream.avail_in == 0 && strip->stream.avail_out > 0;
-  strip->n_chunk = close_chunk(strip->chunk, n_head + strip->stream.total_out);
+  size_t n_packed = pack_rows(strip, n_bytes, strip->chunk + CONIC_PNG_DATA + n_head,
+                              s->chunk_room - CONIC_PNG_DATA - n_head - SUM, is_last);
+  strip->n_chunk = n_packed ? conic_png_close_chunk(strip->chunk, "IDAT", n_head + n_packed) : 0;
 }
 
 /* Packs the next n strips and writes them. */
-static conic_status write_round(conic_context *context, png_strips *s, size_t n, FILE *to, uLong *adler) {
+static conic_status write_round(conic_context *context, png_strips *s, size_t n, FILE *to, uint32_t *adler) {
   conic_parallel_for(context, n, pack_strip, s);
   for (size_t i = 0; i < n; i++) {
     const png_strip *strip = &s->strips[i];
     size_t n_bytes = rows_of(s, s->first + i) * (s->row_bytes + 1);
-    if (!strip->is_packed)
+    if (!strip->n_chunk)
       return conic_fail(context, CONIC_ERROR_MEMORY, "zlib packs no PNG");
-    *adler = adler32_combine(*adler, strip->adler, (z_off_t)n_bytes);
+    *adler = (uint32_t)adler32_combine(*adler, strip->adler, (long)n_bytes);
     fwrite(strip->chunk, 1, strip->n_chunk, to);
   }
   s->first += n;
@@ -125,10 +202,10 @@ static conic_status open_strips(conic_context *context, png_strips *s, size_t n)
   size_t filtered_bytes = s->n_rows * (s->row_bytes + 1);
   for (size_t i = 0; i < n && status == CONIC_OK; i++) {
     png_strip *strip = &s->strips[i];
-    strip->has_stream = deflateInit2(&strip->stream, ZIP_LEVEL, Z_DEFLATED, -MAX_WBITS, ZIP_MEMORY, Z_FILTERED) == Z_OK;
-    if (!strip->has_stream)
+    s->chunk_room = open_strip(strip, filtered_bytes);
+    if (!s->chunk_room)
       return CONIC_ERROR_MEMORY;
-    s->chunk_room = deflateBound(&strip->stream, (uLong)filtered_bytes) + 64; /* and what stands about it */
+    s->chunk_room += 64; /* for what stands about it */
     status = conic_memory_allocate_these(
         context, CONIC_ROOM(strip->rows[0], s->row_bytes), CONIC_ROOM(strip->rows[1], s->row_bytes),
         CONIC_ROOM(strip->filtered, filtered_bytes), CONIC_ROOM(strip->chunk, s->chunk_room));
@@ -139,8 +216,7 @@ static conic_status open_strips(conic_context *context, png_strips *s, size_t n)
 static void close_strips(conic_context *context, png_strips *s, size_t n) {
   for (size_t i = 0; s->strips && i < n; i++) {
     png_strip *strip = &s->strips[i];
-    if (strip->has_stream)
-      deflateEnd(&strip->stream);
+    close_strip(strip);
     conic_memory_release_these(context, strip->rows[0], strip->rows[1], strip->filtered, strip->chunk);
   }
   conic_memory_release(context, s->strips);
@@ -151,8 +227,8 @@ conic_status conic_png_write_strips(conic_context *context, const conic_image *i
       .image = image,
       .layout = {
           .n_channels = 4, .sample_bytes = 1, .is_straight = 1, .is_display = image->is_display != 0, .tone = tone}};
-  unsigned char end[LENGTH_AND_NAME + 4 + SUM];
-  uLong adler = 1;
+  unsigned char end[CONIC_PNG_DATA + 4 + SUM];
+  uint32_t adler = 1;
   s.row_bytes = 4 * (size_t)image->width;
   s.n_rows = STRIP_BYTES / (s.row_bytes + 1) + 1;
   s.n_rows = s.n_rows > LEAST_ROWS ? s.n_rows : LEAST_ROWS;
@@ -171,11 +247,9 @@ conic_status conic_png_write_strips(conic_context *context, const conic_image *i
       status = write_round(context, &s, left < n_a_round ? left : n_a_round, to, &adler);
   }
   if (status == CONIC_OK) { /* which is known last, in a chunk of its own */
-    conic_store_big_32(end + LENGTH_AND_NAME, (uint32_t)adler);
-    fwrite(end, 1, close_chunk(end, 4), to);
+    conic_store_big_32(end + CONIC_PNG_DATA, (uint32_t)adler);
+    fwrite(end, 1, conic_png_close_chunk(end, "IDAT", 4), to);
   }
   close_strips(context, &s, n_a_round);
   return status;
 }
-
-#endif

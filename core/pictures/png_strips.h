@@ -5,7 +5,13 @@
 
 #include "conic/image.h"
 
+/* Where a chunk's data begin, after its length and name. */
+enum { CONIC_PNG_DATA = 8 };
+
+/* Puts length, name and sum about n bytes of data that stand in their place; returns the bytes of the chunk. */
+size_t conic_png_close_chunk(unsigned char *chunk, const char *name, size_t n);
+
 /* Writes the picture's colours as straight sRGB codes of R, G, B and A, in chunks IDAT, whose bytes do not depend on
- * the number of threads. The build has libpng, and so zlib. What the stream refuses it remembers. Errors: MEMORY,
- * CANCELLED. */
+ * the number of threads. Without zlib they are stored, not packed. What the stream refuses it remembers. Errors:
+ * MEMORY, CANCELLED. */
 conic_status conic_png_write_strips(conic_context *context, const conic_image *image, conic_tone tone, FILE *to);
