@@ -31,9 +31,39 @@ void cli_help_usage(FILE *to) {
     fprintf(to, "  %-11s %s\n", cli_command_at(i)->name, cli_command_at(i)->summary);
 }
 
+/* What each feature of a build would bring, and Debian's package of it. */
+static const struct {
+  const char *feature, *brings, *package;
+} missed[] = {{"OpenEXR", "pictures in EXR", "libopenexr-dev"},
+              {"libpng", "textures and pictures to compare in PNG, and smaller PNG", "libpng-dev"},
+              {"OpenImageIO", "JPEG, TIFF and others", "libopenimageio-dev"},
+              {"Assimp", "3MF, DAE, FBX and others", "libassimp-dev"},
+              {"libxml2", "E57", "libxml2-dev"},
+              {"zstd", ".lpc and .spz", "libzstd-dev"},
+              {"CURL", "clouds on the web", "libcurl4-openssl-dev"},
+              {"zlib", "3MF, .spz, NPZ and glTF that are deflated", "zlib1g-dev"},
+              {"libwebp", ".sog", "libwebp-dev"},
+              {"Brotli", "Potree 2 that is packed", "libbrotli-dev"},
+              {"Draco", "glTF by Draco", "libdraco-dev"},
+              {"meshoptimizer", "glTF by meshopt", "libmeshoptimizer-dev"}};
+
+static void print_missed(void) {
+  const char *label = "this build lacks";
+  for (int i = 0; conic_feature_at(i); i++)
+    for (size_t k = 0; k < sizeof missed / sizeof *missed; k++)
+      if (!conic_feature_at(i)->available && strcmp(conic_feature_at(i)->name, missed[k].feature) == 0) {
+        printf("%s %s: %s (%s)", label, missed[k].feature, missed[k].brings, missed[k].package);
+        label = ";";
+      }
+  if (*label == ';')
+    putchar('\n');
+}
+
 static void print_program(void) {
   cli_help_usage(stdout);
-  puts("\nreads: " CLI_READABLE "; " CLI_READABLE_GAUSSIANS "\n\nexit codes:");
+  puts("\nreads: " CLI_READABLE "; " CLI_READABLE_GAUSSIANS);
+  print_missed();
+  puts("\nexit codes:");
   for (const cli_help_row *row = cli_help_exit_codes; row->name; row++)
     printf("  %-2s %s\n", row->name, row->meaning);
   puts("\nThe guide begins with docs/guide/first-picture.md beside conic's source.");
