@@ -94,6 +94,16 @@ int cli_parse_sky(const char *text, void *value) {
   return cli_parse_color(text, length, lighting->sky) && cli_parse_color(ground, strlen(ground), lighting->ground);
 }
 
+/* The grey that is as bright: by coloured light, values' colours would not be those of the legend. */
+static void make_grey(float color[3]) {
+  color[0] = color[1] = color[2] = 0.2126f * color[0] + 0.7152f * color[1] + 0.0722f * color[2];
+}
+
+static int shows_values(const cli_render_job *job) {
+  const conic_coloring *coloring = conic_source_coloring(job->source);
+  return !job->is_plain && coloring && coloring->ramp && job->coloring.by && strcmp(job->coloring.by, "auto") != 0;
+}
+
 void cli_lights_settle(cli_render_job *job) {
   conic_lighting *lighting = &job->shot.render.lighting;
   if (!job->is_light_given)
@@ -107,6 +117,12 @@ void cli_lights_settle(cli_render_job *job) {
   for (int i = 0; i < 3 && !job->is_sky_given; i++) {
     lighting->sky[i] = job->is_studio ? studio_sky[i] : plain_sky;
     lighting->ground[i] = job->is_studio ? studio_ground[i] : plain_sky;
+  }
+  for (int i = 0; i < lighting->n_lights && !job->is_light_given && shows_values(job); i++)
+    make_grey(lighting->lights[i].color);
+  if (!job->is_sky_given && shows_values(job)) {
+    make_grey(lighting->sky);
+    make_grey(lighting->ground);
   }
   lighting->is_given = 1;
   /* Whatever looks at it, as the light stands in the scene. */

@@ -16,7 +16,7 @@ typedef struct legend_row {
 
 typedef struct legend {
   const conic_coloring *coloring;
-  const char *title;
+  char title[64];
   int has_bar, n_rows;
   legend_row rows[MOST_ROWS];
   int width, height; /* in units */
@@ -115,10 +115,15 @@ static void size_legend(legend *l) {
   l->height = 2 * MARGIN + TITLE + (l->has_bar ? BAR_HEIGHT : l->n_rows * ROW - (ROW - SWATCH));
 }
 
+/* Of the values whose unit is known. */
+static const char *unit_of(const char *field) {
+  return strcmp(field, "gps_time") == 0 ? " (s)" : strcmp(field, "scan_angle") == 0 ? " (deg)" : "";
+}
+
 static void lay_out_legend(const conic_coloring *coloring, legend *l) {
   memset(l, 0, sizeof *l);
   l->coloring = coloring;
-  l->title = coloring->field;
+  snprintf(l->title, sizeof l->title, "%s%s", coloring->field, unit_of(coloring->field));
   if (!coloring->ramp)
     list_axes(l);
   else if (strcmp(coloring->ramp, conic_ramp_name(CONIC_RAMP_CLASSES)) == 0)
@@ -196,7 +201,7 @@ static void draw_legend_into(const legend *l, const canvas *to, float alpha) {
 void conic_legend_draw(const conic_coloring *coloring, conic_image *image) {
   legend l;
   int shorter = image->width < image->height ? image->width : image->height;
-  canvas to = {.image = image, .unit = shorter > 900 ? shorter / 450 : 1};
+  canvas to = {.image = image, .unit = shorter > 800 ? shorter / 400 : 1};
   if (!image->planes[CONIC_PLANE_RGBA])
     return;
   lay_out_legend(coloring, &l);
@@ -222,7 +227,7 @@ conic_status conic_legend_make(conic_context *context, const conic_coloring *col
 conic_status conic_legend_make_list(conic_context *context, const char *title, const char *const *names,
                                     const float (*colors)[3], int n, conic_image *image) {
   legend l = {0};
-  l.title = title;
+  snprintf(l.title, sizeof l.title, "%s", title);
   for (int i = 0; i < n && i < MOST_ROWS; i++)
     memcpy(add_legend_row(&l, names[i])->color, colors[i], sizeof colors[i]);
   size_legend(&l);

@@ -73,11 +73,20 @@ run 2 render slope.ply -o no.pfm --color-by ""
 run 2 render slope.ply -o no.pfm $picture --ramp heat
 [[ ! -e no.pfm ]] || fail "a picture of what cannot be"
 
+# The light on what shows values is grey, as the legend is true then, unless it is given.
+for i in {0..99}; do echo "$((i % 10)) $((i / 10)) 0 $((i % 2))" ; done > value.txt
+run_as_typed 0 render value.txt -o value.pfm --size 9x9 --columns x,y,z,v --color-by v --ramp grey --background 0,0,0 --json value.json
+perl -0777 -ne 'my @sky = /"sky": \[\s*([\d.e-]+),\s*([\d.e-]+),\s*([\d.e-]+)/ or exit 1; exit !($sky[0] == $sky[1] && $sky[1] == $sky[2])' \
+  value.json || fail "a coloured sky on values: $(cat value.json)"
+run_as_typed 0 render value.txt -o value.pfm --size 9x9 --columns x,y,z,v --color-by v --json value.json --sky 0.1,0.2,0.3
+grep -q '0.3' value.json || fail "the given sky is lost"
+
 # Builders keep colours; what keeps colours has no fields, and heights and normals all the same.
-run 0 prepare slope.ply -o prepared.ply --color-by x --json prepared.json
-[[ $(value maximum prepared.json) == 19 ]] || fail "prepare: the range"
-run 0 render prepared.ply -o prepared.pfm $picture
-cmp -s prepared.pfm x.pfm || fail "prepare keeps other colours than a picture has"
+run 0 prepare --plain slope.ply -o prepared.ply --color-by x --json prepavalue.json
+[[ $(value maximum prepavalue.json) == 19 ]] || fail "prepare: the range"
+run 0 render prepared.ply -o prepavalue.pfm $picture --shade none
+run 0 render slope.ply -o unlit.pfm $picture --color-by x --shade none
+cmp -s prepavalue.pfm unlit.pfm || fail "prepare keeps other colours than a picture has"
 run 0 octree slope.ply -o slope.cot --color-by height --up z --json octree.json
 [[ $(value maximum octree.json) == 9 ]] || fail "octree: the range"
 run 0 render slope.cot -o cot.pfm $picture
