@@ -10,16 +10,20 @@ from .errors import ArgumentError
 
 
 def as_numpy(array: Any, name: str) -> numpy.ndarray:
-    """A view of an array of NumPy, torch, jax, … through `__array_interface__` or DLPack."""
+    """A view of an array of NumPy, torch, jax, … through `__array_interface__` or DLPack; a copy of a GPU's."""
     if isinstance(array, numpy.ma.MaskedArray):
         raise ArgumentError(f"{name}: the array has a mask; hand over its .filled(numpy.nan)")
     if isinstance(array, numpy.ndarray):
         return numpy.asarray(array)
-    device = str(getattr(array, "device", "cpu"))
-    if device.startswith(("cuda", "mps", "xpu", "xla")):
-        raise ArgumentError(f"{name}: the array is on {device}; hand over its .cpu()")
     if hasattr(array, "detach"):  # torch: what gradients go through is not handed out otherwise
         array = array.detach()
+    device = str(getattr(array, "device", "cpu")).lower()
+    if device.startswith(("cuda", "<cuda", "mps", "xpu", "xla")):  # of torch; of CuPy; of jax
+        for copy in ("cpu", "get"):
+            if hasattr(array, copy):
+                return as_numpy(getattr(array, copy)(), name)
+        if not hasattr(array, "__array__"):
+            raise ArgumentError(f"{name}: the array is on {device}, and has no .cpu() that copies it")
     if not hasattr(array, "__array_interface__") and not hasattr(array, "__array__") and hasattr(array, "__dlpack__"):
         return numpy.from_dlpack(array)
     try:

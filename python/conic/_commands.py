@@ -8,6 +8,7 @@ from __future__ import annotations
 import copy
 import ctypes
 import inspect
+import keyword
 import os
 import re
 import tempfile
@@ -20,7 +21,7 @@ from ._arrays import as_numpy
 from ._camera import Camera, PathLike
 from ._library import Frames, Kept, draw, kept_of_thread, read_facts, run
 from ._picture import Picture, encode_png
-from ._scene import AnyScene, Scene, _InMemory
+from ._scene import AnyScene, Scene, Splats, _InMemory
 from ._shot import Shot, Sketch, structs_of
 from .errors import ArgumentError
 
@@ -79,6 +80,7 @@ class _Call:
         self.scene: Optional[Scene] = None
         self._folder: Optional[tempfile.TemporaryDirectory] = None
         self._files: List[str] = []  # in it
+        self._given: Dict[str, Any] = {}  # by the options' names
 
     def lend(self, kind: str, struct: ctypes.Structure) -> str:
         name = f"memory:{kind}:{len(self.loans) + 1}"
@@ -90,6 +92,7 @@ class _Call:
         name = {"output": "o", "planes": "aov"}.get(name, name).rstrip("_").replace("_", "-")
         if value is None or value is False:
             return
+        self._given[name] = value
         is_list = name in _REPEATED and isinstance(value, (list, tuple)) and not all(
             isinstance(part, (int, float)) for part in value)
         for part in value if is_list else [value]:
@@ -118,8 +121,11 @@ class _Call:
         elif isinstance(scene, (list, tuple)) and scene:
             for part in scene:
                 self.input(part, depth + 1)
+        elif hasattr(scene, "__array__") or hasattr(scene, "__dlpack__"):  # bare positions
+            self.input(Splats(scene), depth + 1)
         else:
-            raise ArgumentError(f"a scene is a path, or of conic.open, Splats, Mesh or Gaussians; not {type(scene)}")
+            raise ArgumentError("a scene is a path, or of conic.open, Splats, Mesh or Gaussians, or an array (N, 3) of "
+                                f"points; not {type(scene)}")
 
     def camera(self, camera: Optional[AnyCamera]) -> None:
         if isinstance(camera, Camera):
@@ -184,9 +190,21 @@ class _Call:
         try:
             return run([self.command, "--", *self.inputs], self.values, loans=self.loans, progress=progress,
                        frames=frames, kept=kept, keeps_source=keeps_source, files=self._files)
+        except ArgumentError as failure:
+            raise ArgumentError(self._in_python(str(failure))) from None
         finally:
             if self._folder:
                 self._folder.cleanup()
+
+    def _in_python(self, message: str) -> str:
+        """A shell's words of options as Python's: `size=(64,) is not understood` for `--size: "64" is not …`."""
+        def option(found: "re.Match[str]") -> str:
+            name = found[1]
+            given = f"={self._given[name]!r}" if found[2] and name in self._given else ""
+            name = {"o": "output", "aov": "planes"}.get(name, name).replace("-", "_")
+            return (name + "_" if keyword.iskeyword(name) else name) + given
+        return re.sub(r'(?<![\w-])--?([a-z][a-z0-9-]*)(: "[^"]*"(?= is not understood))?', option,
+                      message).replace("WxH: ", "(W, H): ")
 
     def ask(self, **how: Any) -> Dict[str, Any]:
         """The answer of a command that has one."""
@@ -247,7 +265,8 @@ def render(scene: AnyScene, camera: Union[None, AnyCamera, Shot] = None, *, plan
            **options: Options) -> Any:
     """Draws a scene; with the same options, the bits are those of `conic render`.
 
-    `scene`: what :func:`open` gives, :class:`Splats`, :class:`Mesh`, :class:`Gaussians`, a path, or a list of these.
+    `scene`: what :func:`open` gives, :class:`Splats`, :class:`Mesh`, :class:`Gaussians`, a path, an array (N, 3) of
+    points, or a list of these.
     `camera`: a :class:`Camera`, or a file of cameras, of which `view` names one; without, all of the scene is framed.
     `planes`: of "rgba", "Z", "N", "albedo", "weight", "count", "id", "P", of Gaussian scenes "T", "medianZ",
     "inverseZ", "last", "doubt"; "ao", "shadow" (rgba and Z). `profile`: how a Gaussian scene is composited. `output`:
@@ -285,6 +304,12 @@ def render(scene: AnyScene, camera: Union[None, AnyCamera, Shot] = None, *, plan
         picture._told = lambda: read_facts(told)
     is_many = view == "all" or turntable is not None or bool(options.get("stereo"))
     return frames.pictures if is_many else frames.pictures[0] if frames.pictures else _empty(told)
+
+
+def turntable(scene: AnyScene, n: int = 36, camera: Optional[AnyCamera] = None, **options: Options) -> List[Picture]:
+    """Draws `n` pictures around a scene, evenly apart: :func:`render` with `turntable=n`, whose other options are taken
+    by their names, such as `size=(640, 480)`. Returns a list of :class:`Picture`, (H, W, 4) and (H, W) as there."""
+    return list(render(scene, camera, turntable=n, **options))
 
 
 def _empty(told: bytes) -> Picture:

@@ -101,7 +101,8 @@ def render(
 ) -> Any:
     """Draws a scene; with the same options, the bits are those of `conic render`.
 
-    `scene`: what :func:`open` gives, :class:`Splats`, :class:`Mesh`, :class:`Gaussians`, a path, or a list of these.
+    `scene`: what :func:`open` gives, :class:`Splats`, :class:`Mesh`, :class:`Gaussians`, a path, an array (N, 3) of
+    points, or a list of these.
     `camera`: a :class:`Camera`, or a file of cameras, of which `view` names one; without, all of the scene is framed.
     `planes`: of "rgba", "Z", "N", "albedo", "weight", "count", "id", "P", of Gaussian scenes "T", "medianZ",
     "inverseZ", "last", "doubt"; "ao", "shadow" (rgba and Z). `profile`: how a Gaussian scene is composited. `output`:
@@ -271,6 +272,17 @@ def render(
     isa: the processor's instructions: auto, scalar, sse2, avx2, avx512, neon; changes no bit of the picture
         [auto]
     threads: how many threads compute; the results never depend on it [0: all]
+    """
+
+
+def turntable(
+    scene: AnyScene,
+    n: int = 36,
+    camera: Optional[AnyCamera] = None,
+    **options: Options,
+) -> List[Picture]:
+    """Draws `n` pictures around a scene, evenly apart: :func:`render` with `turntable=n`, whose other options are taken
+    by their names, such as `size=(640, 480)`. Returns a list of :class:`Picture`, (H, W, 4) and (H, W) as there.
     """
 
 

@@ -499,6 +499,7 @@ class Reading(ctypes.Structure):
         ("keeps_alpha", c_int),
         ("cache", c_char_p),
         ("colors_are", c_int),
+        ("place", c_char_p),
     ]
 
 

@@ -360,6 +360,7 @@ class Reading(_Struct):
     keeps_alpha: bool = False
     cache: Optional[str] = None
     colors_are: str = "file"
+    place: Optional[str] = None
 
     def _put(self, struct: Any, alive: List[Any]) -> None:
         super()._put(struct, alive)

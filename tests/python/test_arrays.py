@@ -44,6 +44,24 @@ class Arrays(unittest.TestCase):
     def assert_same(self, picture, wanted):
         self.assertEqual(dict(picture.statistics["hash"].items()), wanted)
 
+    def test_bare_positions(self):
+        points = numpy.random.default_rng(3).random((200, 3), numpy.float32)
+
+        class OfGpu:
+            device = "cuda:0"
+
+            def cpu(self):
+                return points
+
+            def __array__(self, *_):
+                raise TypeError("can't convert a cuda tensor to numpy")
+
+        wanted = conic.render(conic.Splats(points), size=SIZE).statistics["hash"]
+        for scene in (points, [points], OfGpu(), conic.Splats(OfGpu())):
+            self.assertEqual(conic.render(scene, size=SIZE).statistics["hash"], wanted)
+        with self.assertRaisesRegex(conic.ArgumentError, r"\(3, 200\), and \(N, 3\) is needed"):
+            conic.render(points.T, size=SIZE)
+
     def test_splats_of_all_shapes(self):
         scene = conic.make("knot", n=3000)
         wanted = hashes(scene.path, *WORDS)
@@ -87,7 +105,7 @@ class Arrays(unittest.TestCase):
         array = numpy.arange(12, dtype=numpy.float32).reshape(4, 3)
         for kind in (OnlyDlpack, Tensor):
             self.assertEqual(conic.Splats(kind(array))._struct.position[0], array.ctypes.data)
-        on_device = Tensor(array)
+        on_device = OnlyDlpack(array)
         on_device.device = "cuda:0"
         with self.assertRaisesRegex(conic.ArgumentError, r"cuda:0.*\.cpu"):
             conic.Splats(on_device)

@@ -71,11 +71,18 @@ class Commands(unittest.TestCase):
         self.assertEqual(picture.planes, ["N", "id", "P"])
         self.assertEqual(picture["N"].shape, (60, 80, 3))
         self.assertEqual(picture["id"].dtype, numpy.uint32)
-        with self.assertRaisesRegex(conic.ArgumentError, "did you mean --method"):
-            conic.render(self.splats, methd="ray")
+        for wanted, options in (("did you mean method\\?", {"methd": "ray"}), ("size=\\(64,\\) is not", {"size": (64,)}),
+                                ("it takes \\(W, H\\)", {"size": "x"}), ("as_='msh' is not", {"as_": "msh"})):
+            with self.assertRaisesRegex(conic.ArgumentError, wanted):
+                conic.render(self.splats, **options)
         for words in ({"json": "x"}, {"output": "-"}):
             with self.assertRaises(conic.ArgumentError):
                 conic.render(self.splats, **words)
+
+    def test_turntable(self):
+        pictures = conic.turntable(self.splats, 3, size=SIZE)
+        self.assertEqual([picture["rgba"].shape for picture in pictures], 3 * [(60, 80, 4)])
+        self.assertNotEqual(pictures[0].statistics["hash"], pictures[1].statistics["hash"])
 
     def test_arguments_that_have_no_end(self):
         endless = []
