@@ -24,20 +24,23 @@ int cli_parse_turntable(const char *text, void *value) {
   return job->n_frames > 0 && job->n_frames <= MOST_FRAMES && *text == '\0';
 }
 
+/* A:B:STEP, or A-BxSTEP as queues of farms have it. */
 int cli_parse_frames(const char *text, void *value) {
+  static const char *const separators[] = {":-", ":x"};
   int numbers[3] = {0, 0, 1}, n = 0;
   do
     numbers[n] = take_frame_number(&text);
-  while (numbers[n++] >= 0 && n < 3 && *text == ':' && *++text);
+  while (numbers[n++] >= 0 && n < 3 && *text && strchr(separators[n - 1], *text) && *++text);
   if (n == 1)
     numbers[1] = numbers[0];
   *(cli_frames *)value = (cli_frames){numbers[0], numbers[1], numbers[2], 1};
-  return *text == '\0' && text[-1] != ':' && numbers[0] >= 0 && numbers[0] <= numbers[1] && numbers[2] > 0;
+  return *text == '\0' && numbers[0] >= 0 && numbers[0] <= numbers[1] && numbers[2] > 0 && !strchr(":-x", text[-1]);
 }
 
 /* --- names --- */
 
-/* The first %d or %0Nd of a name, with its length and N; null: there is none. Any other % is a letter like others. */
+/* The first %d or %0Nd of a name, or else ## or more, with its length and N; null: there is none. Any other % and # is
+ * a letter like others. */
 static const char *find_pattern(const char *path, size_t *length, int *width) {
   for (const char *percent = strchr(path, '%'); percent; percent = strchr(percent + 1, '%')) {
     const char *end = percent + 1;
@@ -50,7 +53,10 @@ static const char *find_pattern(const char *path, size_t *length, int *width) {
     if (*end == 'd')
       return percent;
   }
-  return NULL;
+  const char *signs = strstr(path, "##");
+  *length = signs ? strspn(signs, "#") : 0;
+  *width = *length < 9 ? (int)*length : 9;
+  return signs;
 }
 
 char *cli_frame_name(const cli_render_job *job, const char *path, int i_frame) {

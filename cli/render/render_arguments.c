@@ -214,12 +214,14 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        "draw again what a picture says that it was drawn from, to the bit; other options change that. Inputs are "
        "looked "
        "for beside it, here, and among those that are given"},
-      {"turntable", CLI_PARSED, job, "N", "N pictures around the scene: OUT.0001.exr …, or as OUT_%04d.exr says",
+      {"turntable", CLI_PARSED, job, "N",
+       "N pictures around the scene: OUT.0001.exr …, or as OUT_%04d.exr or OUT_####.exr says",
        .parse = cli_parse_turntable, .group = "several pictures",
        .intro = "Turns around the scene, parts of them, and both eyes.", .is_usual = 1,
        .acts = {.apart = CLI_FACT(MAP)}},
       {"frames", CLI_PARSED, &job->frames, "A:B:STEP",
-       "only the frames A to B in steps of STEP; those of --turntable count from 1, those of --view all from 0 [all]",
+       "only the frames A to B in steps of STEP, or A-BxSTEP; those of --turntable count from 1, those of --view all "
+       "from 0 [all]",
        .parse = cli_parse_frames,
        .acts = {.needs = CLI_FACT(TURNTABLE) | CLI_FACT(EVERY_VIEW), .apart = CLI_FACT(MAP)}},
       {"resumable", CLI_FLAG, &job->accumulating.is_resumable, NULL,

@@ -135,9 +135,9 @@ def render(
     no_shot: leave out of .exr, .png and .tif what they say of how they were made
     again: draw again what a picture says that it was drawn from, to the bit; other options change that. Inputs
         are looked for beside it, here, and among those that are given
-    turntable: N pictures around the scene: OUT.0001.exr …, or as OUT_%04d.exr says
-    frames: only the frames A to B in steps of STEP; those of --turntable count from 1, those of --view all from
-        0 [all]
+    turntable: N pictures around the scene: OUT.0001.exr …, or as OUT_%04d.exr or OUT_####.exr says
+    frames: only the frames A to B in steps of STEP, or A-BxSTEP; those of --turntable count from 1, those of
+        --view all from 0 [all]
     resumable: keep beside the first OUT what is finished, so that --resume can go on after any end: frames in
         OUT.frames, of one --accumulate the sums in OUT.sums, and of one .exr larger than half of --memory the
         strips in OUT.strips and OUT.part

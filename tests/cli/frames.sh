@@ -20,6 +20,9 @@ turn 0 --turntable 2 -o out.d/a.pfm -o out.d/b_%d.pfm -o out.d/c%02d-e.pfm -o ou
 holds %%.50%s0001.pfm %%.50%s0002.pfm a.0001.pfm a.0002.pfm b_1.pfm b_2.pfm c01-e.pfm c02-e.pfm
 turn 0 --turntable 2 -o out.d/100%.pfm -o out.d/%5d.pfm
 holds %5d.0001.pfm %5d.0002.pfm 100%.0001.pfm 100%.0002.pfm
+turn 0 --turntable 9 --frames 4-8x2 -o out.d/a####.pfm -o out.d/c#.pfm
+holds a0004.pfm a0006.pfm a0008.pfm c#.0004.pfm c#.0006.pfm c#.0008.pfm
+for words in 4-8x 4- x2 4-8-2 4x8; do turn 2 --turntable 9 --frames $words -o out.d/a.pfm; done
 turn 0 -o out.d/%04d.pfm # one picture is no frame
 holds %04d.pfm
 turn 0 --turntable 2 --overdraw out.d/o%d.pfm
