@@ -163,8 +163,7 @@ static conic_status read_camera_bytes(conic_camera_list *list, const unsigned ch
   conic_status status = conic_text_byte_order_mark(list->context, list->name, bytes, n_bytes, &n_mark);
   if (status != CONIC_OK)
     return status;
-  if (n_mark) /* of an empty file there are no bytes to move on from */
-    bytes += n_mark;
+  bytes += n_mark;
   n_bytes -= n_mark;
   switch (kind_of_content(bytes, n_bytes)) {
   case CONIC_CAMERA_FILE_TRANSFORMS:
@@ -185,7 +184,8 @@ static conic_status read_camera_file(conic_camera_list *list, const char *path) 
   conic_status status = conic_mapping_open(list->context, path, &mapping);
   if (status != CONIC_OK)
     return status;
-  status = read_camera_bytes(list, mapping.bytes, mapping.n_bytes);
+  const unsigned char nothing = 0; /* an empty file has no bytes, which are no address */
+  status = read_camera_bytes(list, mapping.n_bytes ? mapping.bytes : &nothing, mapping.n_bytes);
   conic_mapping_close(list->context, &mapping);
   return status;
 }
