@@ -131,6 +131,13 @@ def files(kind, words):
         expect(code == 0 or name in said, f"{kind}, {option}: {said}")
 
 
+def same_light():
+    """What is drawn more coarsely has the colours, and so the light, of all of it."""
+    for source in ("tree.cot", "levels.lpc", "hybrid.chy"):
+        told = [framing(draw([source] + more)[2]) for more in ([], ["--error", "4"])]
+        expect(told[0]["lights"] and told[0] == told[1], f"{source}: --error changes what is framed or lit: {told}")
+
+
 def orders():
     """Several inputs in another order are the same scene."""
     pathlib.Path("raw.csv").write_text("x,y,z,intensity\n" + "".join(
@@ -147,6 +154,7 @@ for source_kind, source in make_sources().items():
     n_compared += stays(source_kind, source.split())
     n_planes += planes(source_kind, source.split())
     files(source_kind, source.split())
+same_light()
 orders()
 print(f"{n_compared} pictures with options of work, {n_planes} pairs of sources and planes")
 sys.exit(failures > 0)
