@@ -181,6 +181,7 @@ typedef struct cli_bench_line {
   uint64_t hash[CONIC_N_PLANES];         /* 0 where the plane was not drawn */
   int i_wrong_plane;                     /* the first that differs from the scalar reference; -1: none */
   double old_ms[CLI_BENCH_N_STAGES + 1]; /* of --compare: stages and frame; NaN where it has no such line */
+  double old_quartile_ms[2];             /* likewise; NaN where they are not told */
   cli_bench_trace *trace;                /* null: nobody asks */
   cli_bench_schedule *schedules;         /* of --simulate-threads; freed by who frees the lines */
   int n_schedules;

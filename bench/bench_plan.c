@@ -165,6 +165,7 @@ static int append_line(cli_bench_job *job, int i_scene, int i_method, conic_isa 
   line->n_turns = job->n_turns;
   for (int i = 0; i <= CLI_BENCH_N_STAGES; i++)
     line->old_ms[i] = (double)NAN;
+  line->old_quartile_ms[0] = line->old_quartile_ms[1] = (double)NAN;
   return CLI_DONE;
 }
 

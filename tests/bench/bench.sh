@@ -70,6 +70,13 @@ run 0 bench --scenes sphere-2k,plane-500 --isa scalar --threads 1 "${small[@]}" 
 has '^times as fast as old.json'
 has '^1 line is not in it'
 [[ $(grep -c '"speedup": {' new.json) -eq 1 ]] || fail "not one speedup"
+# The same run is as fast; one whose quartiles lie apart is not
+sed -E 's/("ms_quartiles": \[)[^]]*/\10, 1e9/' old.json > wide.json
+run 0 bench --scenes sphere-2k --isa scalar --threads 1 "${small[@]}" --compare wide.json
+has 'as fast, within the noise$'
+sed -E 's/("ms_quartiles": \[)[^]]*/\11e-9, 1e-9/' old.json > apart.json
+run 0 bench --scenes sphere-2k --isa scalar --threads 1 "${small[@]}" --compare apart.json
+grep -q 'within the noise' out && fail "a millionth of the time is as fast"
 # Half the old time is half the speed, and no failure
 sed -E '/"ms": \{/,/\}/s/("frame": )[0-9.e+-]+/\10.000001/' old.json > fast.json
 run 0 bench --scenes sphere-2k --isa scalar --threads 1 "${small[@]}" --compare fast.json --json -
