@@ -51,6 +51,36 @@ static void test_prism(fixture *f, int is_soup) {
   conic_triangles_release(f->context, &t);
 }
 
+/* A field whose rows are as high as `row` by turns; four places in its middle are higher, so that a few edges between
+ * them, with an end at either side, are over 30°. */
+static conic_triangles make_field(fixture *f, double row, double higher) {
+  enum { N = 20, MIDDLE = 10 };
+  conic_triangles t = triangles_make(f, 2 * (size_t)(N - 1) * (N - 1), (size_t)N * N, 0);
+  for (int i = 0; i < N * N; i++) {
+    int x = i % N, z = i / N, is_higher = z == MIDDLE && x >= MIDDLE - 2 && x < MIDDLE + 2;
+    triangles_vertex(&t, (uint32_t)i, x, (z % 2 ? 0.0 : row) + (is_higher ? higher : 0.0), z);
+  }
+  for (uint32_t i = 0, n = 0; i < N * (N - 1); i++)
+    if (i % N < N - 1) {
+      triangles_corner(&t, n++, i, i + N, i + N + 1);
+      triangles_corner(&t, n++, i, i + N + 1, i + 1);
+    }
+  return t;
+}
+
+/* Where most edges bend by 20°, a few steeper ones are round; where the others are flat, they are a crease. */
+static void test_rounds(fixture *f) {
+  conic_triangles rounded = make_field(f, 0.176, 0.15), flat = make_field(f, 0.0, 0.5);
+  CHECK_OK(conic_triangles_crease(f->context, &rounded, 30.0));
+  CHECK(rounded.n_normals == 400);
+  CHECK_OK(conic_triangles_crease(f->context, &rounded, 15.0)); /* then all are steep, and end at the border */
+  CHECK(rounded.n_normals > 700);
+  CHECK_OK(conic_triangles_crease(f->context, &flat, 30.0));
+  CHECK(flat.n_normals > 400 && flat.n_normals < 420);
+  conic_triangles_release(f->context, &rounded);
+  conic_triangles_release(f->context, &flat);
+}
+
 /* Triangles without an area, not finite ones, and a vertex of very many. */
 static void test_odd(fixture *f) {
   enum { N = 600 };
@@ -77,6 +107,7 @@ int main(void) {
   fixture f = fixture_open(2);
   test_prism(&f, 0);
   test_prism(&f, 1);
+  test_rounds(&f);
   test_odd(&f);
   fixture_close(&f);
   return check_result();
