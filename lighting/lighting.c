@@ -188,13 +188,9 @@ static void hide_sky_row(void *data, size_t y) {
   }
 }
 
-static int is_grey(const float color[3]) {
-  return color[0] == color[1] && color[1] == color[2];
-}
-
 /* Hides the part of the lights' sky and ground that does not arrive. */
 static void hide_sky(conic_light_work *l) {
-  const size_t n = is_grey(l->lights.ambient) && is_grey(l->lights.slope) ? 3 : 1;
+  const size_t n = conic_is_grey(l->lights.ambient) && conic_is_grey(l->lights.slope) ? 3 : 1;
   for (size_t c = 0; c < 3; c += n) {
     sky_hiding work = {l, c, c + n};
     reflect_sky(l, c);

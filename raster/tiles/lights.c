@@ -31,10 +31,6 @@ void conic_lighting_place(const conic_camera *camera, conic_lighting *lighting) 
   }
 }
 
-static int is_grey(const float color[3]) {
-  return color[0] == color[1] && color[1] == color[2];
-}
-
 static int is_color(const float color[3]) {
   for (int i = 0; i < 3; i++)
     if (!(color[i] >= 0.0f && color[i] <= 1e6f))
@@ -79,10 +75,10 @@ static const char *take_lighting(const conic_camera *camera, const conic_lightin
   if (!conic_is_zero(from->reserved, sizeof from->reserved))
     return "the lighting's reserved words are not zero";
   lights->n_lights = from->n_lights;
-  lights->is_grey = is_grey(from->sky) && is_grey(from->ground);
+  lights->is_grey = conic_is_grey(from->sky) && conic_is_grey(from->ground);
   for (int i = 0; i < from->n_lights && !wrong; i++) {
     wrong = take_light(camera, &from->lights[i], &lights->lights[i]);
-    lights->is_grey &= is_grey(from->lights[i].color);
+    lights->is_grey &= conic_is_grey(from->lights[i].color);
   }
   return wrong ? wrong : take_sky(from, lights);
 }
