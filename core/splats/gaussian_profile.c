@@ -41,7 +41,7 @@ static const conic_profile_row rows[CONIC_N_GAUSSIAN_PROFILES] = {
     [CONIC_PROFILE_PLAYCANVAS_2] = {"playcanvas-2", ON_THE_WEB, .alpha_least = LEAST_ALPHA, .dilation = 0.075,
                                     .compensation_least = -1.0, .axis_least = 0.025, .axis_most = 1024.0 / ROOT_OF_8,
                                     .axis_share = 1.0 / ROOT_OF_8, .axis_seen = 1.0 / ROOT_OF_8,
-                                    .fall_end = 0.01831563888873418},
+                                    .fall_end = 0.01831563888873418, .covariance_unit = 0x3p-10, .color_unit = 0x1p-9},
     [CONIC_PROFILE_SPARK_2] = {"spark-2", ON_THE_WEB, .near_z = 0.1, .alpha_least = 0.5 / 255.0, .dilation = 0.3,
                                .clip = 1.4, .axis_most = 512.0 / ROOT_OF_8, .orders_by_distance = 1},
     [CONIC_PROFILE_GS3D_0_4] = {"gs3d-0.4", ON_THE_WEB, .near_z = 0.1, .dilation = 0.3, .compensation_least = -1.0,

@@ -583,7 +583,8 @@ int conic_oracle_uncertain_color(const oracle_doubting *d, oracle_uncertain *g) 
   const size_t n = (size_t)(degree + 1) * (size_t)(degree + 1), i = g->index;
   const size_t n_stored = (size_t)(set->sh_degree + 1) * (size_t)(set->sh_degree + 1);
   const double most = d->view->rules->color_most > 0.0 ? d->view->rules->color_most : INFINITY;
-  double direction[3], y[(CONIC_MAX_SH_DEGREE + 1) * (CONIC_MAX_SH_DEGREE + 1)], length, far = 0.0;
+  double direction[3], y[(CONIC_MAX_SH_DEGREE + 1) * (CONIC_MAX_SH_DEGREE + 1)], length, far = 0.0, greatest = 0.0;
+  const double stored = d->model->is_setup_in_float ? d->view->rules->color_unit : 0.0;
   double sum[3] = {0.5, 0.5, 0.5}, size[3] = {0.5, 0.5, 0.5}, turned[3] = {0.0, 0.0, 0.0};
   for (int axis = 0; axis < 3; axis++) {
     double mean = set->origin[axis] + (double)set->position[axis][i];
@@ -601,12 +602,14 @@ int conic_oracle_uncertain_color(const oracle_doubting *d, oracle_uncertain *g) 
       double coefficient = sh_number(set, (i * n_stored + k) * 3 + c);
       sum[c] += y[k] * coefficient;
       size[c] += fabs(y[k] * coefficient);
+      greatest = oracle_max(greatest, fabs(coefficient));
       turned[c] += 2.0 * off * sqrt(l * (l + 1) * (2 * l + 1) / 12.566) * fabs(coefficient);
       turned[c] += 8.0 * d->model->setup_roundoff * sqrt((2 * l + 1) / 12.566) * fabs(coefficient);
     }
   }
   for (int c = 0; c < 3; c++) {
-    g->color[c] = (bounded){sum[c], turned[c] + ((double)n + 3.0) * ORACLE_FLOAT_UNIT * size[c]};
+    g->color[c] = (bounded){sum[c], turned[c] + ((double)n + 3.0) * ORACLE_FLOAT_UNIT * size[c] +
+                                        stored * (size[c] + (n > 1 ? (double)n * greatest : 0.0))};
     if (!bounded_is_finite(g->color[c]))
       return 0;
     g->color[c] = bounded_within(g->color[c], 0.0, most);

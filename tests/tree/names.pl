@@ -48,7 +48,7 @@ my (%files, %rooms, %types, %functions, %deeds, %own, @found);
 for my $folder (@engine, qw(tests examples)) {
   for my $path (map { substr $_, 1 + length $root } files_in("$root/$folder")) {
     my ($room, $name) = $path =~ m{(.*)/(.*)};
-    push @{$files{$name}}, $path if $name ne "CMakeLists.txt";
+    push @{$files{$name}}, $path if $name ne "CMakeLists.txt" && $path !~ m{^bench/\w+/run$};
     $rooms{$room}++ if $folder ne 'tests';
     next if $name !~ /\.(?:c|h|cpp)$/ || $path =~ m{^opencl/c_library/}; # stands for the C library where there is none
     next if $path =~ /^(.*)_windows\.c$/ && -f "$root/$1_posix.c"; # which it stands for
