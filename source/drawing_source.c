@@ -10,10 +10,10 @@
 #include "core/splats/repairs_log.h"
 #include "lod/mesh/mesh.h"
 #include "source/facing.h"
+#include "source/input_places.h"
 #include "source/lean_drawing.h"
 #include "source/mesh_input.h"
 #include "source/moved_drawing.h"
-#include "source/places.h"
 #include "source/reach.h"
 #include "source/source_kind.h"
 

@@ -3,7 +3,7 @@
 #include "cli/commands/gaussian_commands.h"
 #include "cli/commands/verify_reference.h"
 #include "cli/render/sample_options.h"
-#include "cli/scene/surfaces_among.h"
+#include "cli/scene/surfaces_drawn.h"
 
 typedef struct gaussian_report {
   const cli_render_job *scene;

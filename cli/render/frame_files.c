@@ -3,7 +3,7 @@
 #include "cli/outputs.h"
 #include "cli/render/frames.h"
 #include "cli/scene/background_options.h"
-#include "cli/scene/surfaces_among.h"
+#include "cli/scene/surfaces_drawn.h"
 #include "core/coloring/color_ramp.h"
 #include "core/coloring/legend.h"
 #include "core/files/disk.h"

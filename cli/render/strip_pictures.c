@@ -6,7 +6,7 @@
 #include "cli/render/units.h"
 #include "core/base/machine.h"
 #include "core/image/image_common.h"
-#include "shots/strips.h"
+#include "shots/strips/strips.h"
 #include "shots/windows.h"
 
 static uint64_t picture_bytes(const cli_render_job *job, const conic_camera *camera) {

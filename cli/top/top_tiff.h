@@ -3,7 +3,7 @@
 
 #include "cli/top/top_store.h"
 #include "core/pictures/tiff_tiles.h"
-#include "source/top_view.h"
+#include "source/top/top_view.h"
 
 #define CLI_TOP_NODATA (-9999.0)
 

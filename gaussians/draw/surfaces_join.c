@@ -3,19 +3,19 @@
 #include "core/base/base.h"
 #include "core/base/color.h"
 
-typedef struct joining {
+typedef struct surface_joining {
   const conic_image *surfaces;
   const float *background;
   int is_linear;
   uint32_t first_id;
   conic_gaussian_planes *planes;
-} joining;
+} surface_joining;
 
 float conic_surface_shown(float premultiplied, float A, int is_linear) {
   return is_linear ? premultiplied : A * (float)conic_srgb_encode((double)(premultiplied / A));
 }
 
-static void join_colors(const joining *j, size_t i, float T, const float rgba[4]) {
+static void join_colors(const surface_joining *j, size_t i, float T, const float rgba[4]) {
   conic_gaussian_planes *p = j->planes;
   const float A = rgba[3];
   for (size_t c = 0; c < 3; c++) {
@@ -27,7 +27,7 @@ static void join_colors(const joining *j, size_t i, float T, const float rgba[4]
 }
 
 /* Planes of depth: w is what of the light is the surface's. */
-static void join_depths(const joining *j, size_t i, float T, float w) {
+static void join_depths(const surface_joining *j, size_t i, float T, float w) {
   conic_gaussian_planes *p = j->planes;
   const float z = ((const float *)j->surfaces->planes[CONIC_PLANE_Z])[i], before = 1.0f - T;
   if (p->z)
@@ -38,7 +38,7 @@ static void join_depths(const joining *j, size_t i, float T, float w) {
     p->median_z[i] = z;
 }
 
-static void join_others(const joining *j, size_t i, float T, float w) {
+static void join_others(const surface_joining *j, size_t i, float T, float w) {
   conic_gaussian_planes *p = j->planes;
   const uint32_t *ids = j->surfaces->planes[CONIC_PLANE_ID];
   const float *normal = j->surfaces->planes[CONIC_PLANE_NORMAL];
@@ -53,7 +53,7 @@ static void join_others(const joining *j, size_t i, float T, float w) {
 }
 
 static void join_row(void *data, size_t row) {
-  const joining *j = data;
+  const surface_joining *j = data;
   const size_t width = (size_t)j->planes->width;
   const float *rgba = j->surfaces->planes[CONIC_PLANE_RGBA];
   for (size_t i = row * width; i < (row + 1) * width; i++) {
@@ -68,6 +68,6 @@ static void join_row(void *data, size_t row) {
 
 void conic_surfaces_join(conic_context *context, const conic_image *surfaces, const float background[3], int is_linear,
                          uint32_t first_id, conic_gaussian_planes *planes) {
-  joining j = {surfaces, background, is_linear, first_id, planes};
+  surface_joining j = {surfaces, background, is_linear, first_id, planes};
   conic_parallel_for(context, (size_t)planes->height, join_row, &j);
 }

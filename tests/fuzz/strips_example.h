@@ -1,7 +1,7 @@
 /* A small picture in strips: what its fuzz target reads and its seed is of. */
 #pragma once
 
-#include "shots/strips_file.h"
+#include "shots/strips/strips_file.h"
 
 #define STRIPS_EXAMPLE_KEY "0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef"
 enum { STRIPS_EXAMPLE_HEAD = 128, STRIPS_EXAMPLE_PART = 600 };

@@ -104,7 +104,7 @@ static void test_turned_together(conic_context *context) {
   }
 }
 
-/* A quaternion of another length is the same rotation in every profile. */
+/* A quaternion of another length is the same rotation in every profile but splat-2023, which takes it as it is. */
 static void test_quaternion_lengths(conic_context *context) {
   conic_gaussians scene = gaussians_random(context, 200, 1, 0), longer = gaussians_random(context, 200, 1, 0);
   const conic_camera camera = camera_turned(no_turn, 48, 48);
@@ -116,7 +116,8 @@ static void test_quaternion_lengths(conic_context *context) {
     conic_gaussian_planes a = picture_draw(context, &scene, &camera, name, CONIC_ISA_AUTO);
     conic_gaussian_planes b = picture_draw(context, &longer, &camera, name, CONIC_ISA_AUTO);
     conic_gaussian_reference r = picture_reference(context, &longer, &camera, name, CONIC_GAUSSIAN_PROFILE);
-    CHECK(pictures_apart(&a, &b) <= 1e-5 && picture_difference(b.rgb, r.rgb, 3 * 48 * 48) <= 1e-5);
+    CHECK(name == CONIC_PROFILE_SPLAT_2023 || pictures_apart(&a, &b) <= 1e-5);
+    CHECK(picture_difference(b.rgb, r.rgb, 3 * 48 * 48) <= 1e-5);
     conic_gaussian_reference_release(context, &r);
     picture_release(&a);
     picture_release(&b);

@@ -1,6 +1,6 @@
 /* Strips of a picture: they cover it once, whatever is kept of it, and those that end it are smaller than the first. */
 #include "core/base/memory.h"
-#include "shots/strip_list.h"
+#include "shots/strips/strip_list.h"
 #include "source/source_kind.h"
 #include "tests/support/check.h"
 

@@ -1,4 +1,4 @@
-#include "cli/scene/surfaces_among.h"
+#include "cli/scene/surfaces_drawn.h"
 
 #include "raster/frame/samples.h"
 #include "source/surfaces_among.h"

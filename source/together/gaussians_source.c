@@ -1,6 +1,6 @@
 /* Gaussian scenes: they draw themselves, composited by alpha. */
 
-#include "source/gaussians_source.h"
+#include "source/together/gaussians_source.h"
 #include "conic/opencl.h"
 #include "core/base/vectors.h"
 #include "core/image/image_common.h"

@@ -1,6 +1,6 @@
 #include "core/base/base.h"
 #include "core/splats/columns.h"
-#include "source/top_lift.h"
+#include "source/top/top_lift.h"
 
 /* Marks a splat that is not finite, which is in no list. */
 #define NOWHERE SIZE_MAX

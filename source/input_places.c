@@ -1,4 +1,4 @@
-#include "source/places.h"
+#include "source/input_places.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -36,7 +36,7 @@ static const char *find_parts(conic_place *p) {
   const double volume = conic_dot(across, m[2]);
   if (!(volume > 0.0 && volume < 1e60))
     return "it mirrors, flattens or is not finite";
-  p->scale = cbrt(volume);
+  p->scale = conic_length(m[0]);
   for (int row = 0; row < 3; row++) {
     p->shift[row] = m[row][3];
     for (int other = 0; other < 3; other++) {

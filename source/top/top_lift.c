@@ -1,4 +1,4 @@
-#include "source/top_lift.h"
+#include "source/top/top_lift.h"
 
 #include "core/base/base.h"
 #include "core/splats/columns.h"

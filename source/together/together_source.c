@@ -6,8 +6,8 @@
 #include "core/base/loan_find.h"
 #include "core/splats/near.h"
 #include "gaussians/scene/gaussian_set.h"
-#include "source/gaussians_source.h"
-#include "source/places.h"
+#include "source/input_places.h"
+#include "source/together/gaussians_source.h"
 
 /* --- scenes --- */
 

@@ -1,4 +1,4 @@
-#include "shots/strips_file.h"
+#include "shots/strips/strips_file.h"
 
 #include "core/files/guard.h"
 #include "core/image/image_common.h"

@@ -1,9 +1,9 @@
-#include "shots/strips.h"
+#include "shots/strips/strips.h"
 
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/image/image_common.h"
-#include "shots/strips_writer.h"
+#include "shots/strips/strips_writer.h"
 #include "shots/windows.h"
 #include "source/source_kind.h"
 

@@ -1,4 +1,4 @@
-#include "shots/strips_writer.h"
+#include "shots/strips/strips_writer.h"
 
 #include "core/image/image_common.h"
 

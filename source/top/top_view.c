@@ -1,9 +1,9 @@
-#include "source/top_view.h"
+#include "source/top/top_view.h"
 
 #include "core/splats/columns.h"
 #include "raster/frame/statistics.h"
 #include "source/source_kind.h"
-#include "source/top_lift.h"
+#include "source/top/top_lift.h"
 
 /* --- meshes --- */
 

@@ -1,4 +1,4 @@
-#include "shots/strip_list.h"
+#include "shots/strips/strip_list.h"
 
 #include "source/source_kind.h"
 

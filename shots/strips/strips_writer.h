@@ -3,9 +3,9 @@
 #pragma once
 
 #include "core/pictures/image_exr_bands.h"
-#include "shots/strip_list.h"
-#include "shots/strips.h"
-#include "shots/strips_file.h"
+#include "shots/strips/strip_list.h"
+#include "shots/strips/strips.h"
+#include "shots/strips/strips_file.h"
 
 typedef struct conic_strips_writer {
   /* Filled in by the caller: */
