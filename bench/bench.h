@@ -72,6 +72,9 @@ extern const char *const cli_bench_stages[CLI_BENCH_N_STAGES]; /* "setup", "bin"
 typedef struct cli_bench_work {
   double read_bytes, written_bytes; /* to and from memory, if caches held everything that is used twice in a row */
   double operations;                /* + − × ÷ √ and comparisons of single numbers */
+  double moved_bytes;               /* from the cache to places in memory that lie in another order */
+  double divisions;                 /* of these, ÷ and √, which take longer */
+  double gathered;                  /* numbers that are taken by an index */
 } cli_bench_work;
 
 void cli_bench_work_of(const conic_render_statistics *statistics, const conic_splats *splats, const conic_image *image,
@@ -104,6 +107,7 @@ typedef struct cli_bench_region {
  * the regions. Frames that differ in their regions from the last one are forgotten. */
 typedef struct cli_bench_trace {
   double now;    /* when the part began that is measured */
+  int is_whole;  /* of a command: by the processor's time, as it runs but a few times, whoever else is there */
   int is_broken; /* there was no memory */
   cli_bench_region *regions, *last_regions;
   size_t n_regions, n_last_regions, regions_room, last_regions_room;
@@ -119,7 +123,7 @@ void cli_bench_trace_watch(void *cookie, const char *name, size_t n_tasks, size_
 conic_status cli_bench_trace_settle(cli_bench_trace *trace);
 void cli_bench_trace_release(cli_bench_trace *trace);
 
-enum { CLI_BENCH_MOST_REGIONS = 12 };
+enum { CLI_BENCH_MOST_REGIONS = 64 };
 
 /* Where a schedule loses time against its work shared out evenly. */
 typedef enum cli_bench_loss {
@@ -133,6 +137,7 @@ typedef enum cli_bench_loss {
 typedef struct cli_bench_scheduled {
   char name[32];
   size_t n_tasks, n_regions;
+  double serial_ms;               /* what one thread does before them */
   double work_ms, ms, longest_ms; /* all tasks one after the other; by the threads; the longest task */
   double lost_ms[CLI_BENCH_N_LOSSES];
 } cli_bench_scheduled;
@@ -243,7 +248,10 @@ void cli_bench_gaussians_work(const cli_bench_scene *scene, cli_bench_line *line
 typedef struct cli_bench_machine {
   int threads;
   double read_bytes_per_s, write_bytes_per_s, copy_bytes_per_s; /* past all caches; a copy counts its bytes once */
-  double operations_per_s; /* multiplications and additions, apart, in the widest vectors */
+  double moved_bytes_per_s; /* lines of 64 bytes, to 256 places by turns, as records go to their tiles */
+  double operations_per_s;  /* multiplications and additions, apart, in the widest vectors */
+  double divisions_per_s;   /* divisions and roots, half of each, likewise */
+  double gathered_per_s;    /* numbers of four bytes that vectors take by their indices from 128 KiB */
 } cli_bench_machine;
 
 conic_status cli_bench_machine_measure(cli_session *worker, cli_bench_machine *machine);
@@ -257,10 +265,11 @@ void cli_bench_report_line(cli_json *json, const cli_bench_line *line);
 void cli_bench_print_machine(const cli_bench_machine *machine);
 void cli_bench_report_machine(cli_json *json, const cli_bench_machine *machines, int n_machines);
 
-/* What each stage must take at least, beside what it takes. */
+/* What each stage must take at least, beside what it takes: the longer of memory's time and the vectors'. */
 double cli_bench_floor_ms(const cli_bench_work *work, const cli_bench_machine *machine);
 void cli_bench_print_floor(const cli_bench_line *line, const cli_bench_machine *machine);
 void cli_bench_report_floor(cli_json *json, const cli_bench_line *line, const cli_bench_machine *machine);
+void cli_bench_report_shares(cli_json *json, const cli_bench_line *line, const cli_bench_machine *machine);
 
 /* Nothing where the line has none. */
 void cli_bench_print_schedules(const cli_bench_line *line);

@@ -23,6 +23,8 @@ static int parse(cli_session *session, int argc, char **argv, cli_bench_job *job
       {"threads", CLI_TEXT, &job->threads_text, "LIST", "numbers of threads; 0: all that there are [1,0]"},
       {"simulate-threads", CLI_TEXT, &job->simulated_text, "LIST",
        "also by a schedule of the tasks that one thread took, what so many would need"},
+      {"command", CLI_TEXT, &job->command, "WORDS", "of a whole command of conic, in place of frames",
+       .acts.with = "simulate-threads"},
       {"size", CLI_SIZE, job->size, "WxH", "pixels [1024x1024]", 1, 65535},
       {"camera", CLI_TEXT, &job->look.camera_path, "FILE", "camera of the files, as of conic render [framed]",
        .acts.with = "@"},
@@ -137,14 +139,22 @@ static void report_bench(cli_json *json, const void *cookie) {
   report_host(json);
   if (job->n_machines)
     cli_bench_report_machine(json, job->machines, job->n_machines);
+  if (job->command) {
+    cli_json_text(json, "command", job->command);
+    cli_bench_report_schedules(json, job->lines);
+  }
   cli_json_object(json, "lines");
-  for (int i = 0; i < job->n_lines; i++)
+  for (int i = 0; i < job->n_lines && !job->command; i++)
     cli_bench_report_line(json, &job->lines[i]);
   cli_json_close(json);
   if (job->is_floor) {
     cli_json_object(json, "floor_ms");
     for (int i = 0; i < job->n_lines; i++)
       cli_bench_report_floor(json, &job->lines[i], machine_of(job, &job->lines[i]));
+    cli_json_close(json);
+    cli_json_object(json, "floor_share");
+    for (int i = 0; i < job->n_lines; i++)
+      cli_bench_report_shares(json, &job->lines[i], machine_of(job, &job->lines[i]));
     cli_json_close(json);
   }
   cli_json_count(json, "wrong_pictures", (uint64_t)job->n_wrong);
@@ -178,6 +188,13 @@ static int measure_plan(cli_session *session, cli_bench_job *job) {
   return exit_code == CLI_DONE && job->n_wrong ? CLI_DIFFERENT : exit_code;
 }
 
+static int simulate_whole(cli_session *session, cli_bench_job *job) {
+  int exit_code = cli_bench_whole_run(job);
+  if (exit_code == CLI_DONE && cli_json_leaves_text(session))
+    cli_bench_print_schedules(job->lines);
+  return exit_code == CLI_DONE ? cli_json_write(session, report_bench, job) : exit_code;
+}
+
 static int run_bench(cli_session *session, int argc, char **argv) {
   cli_bench_job *job = calloc(1, sizeof *job);
   if (!job)
@@ -188,9 +205,11 @@ static int run_bench(cli_session *session, int argc, char **argv) {
     exit_code = cli_check_outputs(session, NULL, 0);
   if (exit_code == CLI_DONE && job->is_kernels)
     exit_code = cli_cross_all(CONIC_CROSS_SEED, job->is_quick ? 1 : 7) ? CLI_DIFFERENT : CLI_DONE;
+  else if (exit_code == CLI_DONE && job->command)
+    exit_code = simulate_whole(session, job);
   else if (exit_code == CLI_DONE)
     exit_code = cli_session_open(session);
-  if (exit_code == CLI_DONE && !job->is_kernels)
+  if (exit_code == CLI_DONE && !job->is_kernels && !job->command)
     exit_code = measure_plan(session, job);
   for (int i = 0; i < job->n_lines; i++)
     free(job->lines[i].schedules);

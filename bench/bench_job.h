@@ -15,6 +15,7 @@ typedef struct cli_bench_job {
   cli_device device;
   int size[2], repeat, n_turns;
   int is_quick, is_curve, is_machine, is_floor, is_kernels;
+  const char *command;      /* to simulate whole; null: scenes are drawn */
   const char *publish_path; /* null: nothing is to be compared with other machines */
 
   /* What it means (bench/bench_plan.c). */
@@ -40,6 +41,10 @@ typedef struct cli_bench_job {
 
 /* Fills in the lines. Returns the exit code, after a message. The caller frees job->lines. */
 int cli_bench_plan(cli_bench_job *job);
+
+/* Runs job->command for each number of threads; the only line has the schedules. Returns the exit code, after a message.
+ */
+int cli_bench_whole_run(cli_bench_job *job);
 
 /* Measures every line. Returns the exit code, after a message; 1 where a picture was wrong. */
 int cli_bench_run(cli_session *session, cli_bench_job *job);

@@ -11,10 +11,10 @@ static double overdraw(const conic_render_statistics *s) {
 }
 
 static cli_bench_work sum_of(const cli_bench_work work[CLI_BENCH_N_STAGES]) {
-  cli_bench_work sum = {0.0, 0.0, 0.0};
+  cli_bench_work sum = {0.0};
   for (int i = 0; i < CLI_BENCH_N_STAGES; i++) {
     sum.read_bytes += work[i].read_bytes;
-    sum.written_bytes += work[i].written_bytes;
+    sum.written_bytes += work[i].written_bytes + work[i].moved_bytes;
     sum.operations += work[i].operations;
   }
   return sum;
@@ -109,7 +109,8 @@ static void report_work(cli_json *json, const cli_bench_line *line) {
   cli_bench_work sum = sum_of(line->work);
   cli_json_object(json, "bytes");
   for (int i = 0; i < CLI_BENCH_N_STAGES; i++)
-    cli_json_number(json, cli_bench_stages[i], line->work[i].read_bytes + line->work[i].written_bytes);
+    cli_json_number(json, cli_bench_stages[i],
+                    line->work[i].read_bytes + line->work[i].written_bytes + line->work[i].moved_bytes);
   cli_json_number(json, "frame", sum.read_bytes + sum.written_bytes);
   cli_json_close(json);
   cli_json_object(json, "operations");

@@ -126,8 +126,10 @@ void cli_bench_schedule_make(const cli_bench_trace *trace, int threads, const do
   schedule->start_ms = start_ms[threads - 1];
   for (size_t i = 0; i < trace->n_last_regions; i++) {
     size_t n_tasks = trace->last_regions[i].n_tasks;
+    cli_bench_scheduled *region = scheduled_of(schedule, trace->last_regions[i].name);
+    region->serial_ms += 1e3 * *next;
     schedule->serial_ms += 1e3 * *next++;
-    schedule_region(next, n_tasks, threads, start_ms, scheduled_of(schedule, trace->last_regions[i].name));
+    schedule_region(next, n_tasks, threads, start_ms, region);
     next += n_tasks;
   }
   schedule->serial_ms += 1e3 * *next;
@@ -164,26 +166,27 @@ static double efficiency_of(double work_ms, double ms, int threads) {
 }
 
 static void print_scheduled(const cli_bench_schedule *schedule, const cli_bench_scheduled *r) {
-  printf("| | %s | %zu | %.2f | %.3f | %.2f | %.3f | %.3f | %.3f | |\n", r->name, r->n_tasks, r->work_ms, r->ms,
-         efficiency_of(r->work_ms, r->ms, schedule->threads), r->longest_ms, r->lost_ms[CLI_BENCH_LOSS_STARTS],
-         r->lost_ms[CLI_BENCH_LOSS_LONGEST] + r->lost_ms[CLI_BENCH_LOSS_UNEVEN]);
+  printf("| | %s | %zu | %.2f | %.2f | %.3f | %.2f | %.3f | %.3f | %.3f | |\n", r->name, r->n_tasks, r->serial_ms,
+         r->work_ms, r->ms, efficiency_of(r->work_ms, r->ms, schedule->threads), r->longest_ms,
+         r->lost_ms[CLI_BENCH_LOSS_STARTS], r->lost_ms[CLI_BENCH_LOSS_LONGEST] + r->lost_ms[CLI_BENCH_LOSS_UNEVEN]);
 }
 
 void cli_bench_print_schedules(const cli_bench_line *line) {
   if (!line->n_schedules)
     return;
   printf("\n%s, scheduled by the times of its tasks\n\n", line->name);
-  puts("| threads | region | tasks | work, ms | ms | efficiency | longest, ms | starts, ms | uneven, ms | limit |");
-  puts("|---|---|---|---|---|---|---|---|---|---|");
+  puts("| threads | region | tasks | before, ms | work, ms | ms | efficiency | longest, ms | starts, ms | uneven, ms | "
+       "limit |");
+  puts("|---|---|---|---|---|---|---|---|---|---|---|");
   for (int i = 0; i < line->n_schedules; i++) {
     const cli_bench_schedule *s = &line->schedules[i];
     const char *region;
     cli_bench_loss limit = cli_bench_schedule_limit(s, &region);
-    printf("| %d | frame | | %.2f | %.3f | %.2f | | %.3f | %.3f | %s%s%s |\n", s->threads, s->work_ms, s->ms,
+    printf("| %d | frame | | | %.2f | %.3f | %.2f | | %.3f | %.3f | %s%s%s |\n", s->threads, s->work_ms, s->ms,
            efficiency_of(s->work_ms, s->ms, s->threads), s->lost_ms[CLI_BENCH_LOSS_STARTS],
            s->lost_ms[CLI_BENCH_LOSS_LONGEST] + s->lost_ms[CLI_BENCH_LOSS_UNEVEN], loss_names[limit],
            region ? ": " : "", region ? region : "");
-    printf("| | serial | | %.2f | %.3f | | | | | |\n", s->serial_ms, s->serial_ms);
+    printf("| | serial | | | %.2f | %.3f | | | | | |\n", s->serial_ms, s->serial_ms);
     for (int r = 0; r < s->n_regions; r++)
       print_scheduled(s, &s->regions[r]);
   }
@@ -215,6 +218,7 @@ static void report_schedule(cli_json *json, const cli_bench_schedule *s) {
     cli_json_text(json, "name", r->name);
     cli_json_count(json, "regions", r->n_regions);
     cli_json_count(json, "tasks", r->n_tasks);
+    cli_json_number(json, "serial_ms", r->serial_ms);
     cli_json_number(json, "work_ms", r->work_ms);
     cli_json_number(json, "ms", r->ms);
     cli_json_number(json, "longest_ms", r->longest_ms);

@@ -19,18 +19,26 @@ static int make_trace_room(cli_bench_trace *trace, void *array, size_t wanted, s
   return 1;
 }
 
+static double trace_now(const cli_bench_trace *trace) {
+  struct timespec now;
+  if (!trace->is_whole)
+    return conic_seconds_now();
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
 /* What passed since the part before. */
 static void note_trace_part(cli_bench_trace *trace) {
-  double now = conic_seconds_now();
+  double now = trace_now(trace);
   if (make_trace_room(trace, &trace->seconds, trace->n_seconds + 1, &trace->seconds_room, sizeof *trace->seconds)) {
     trace->seconds[trace->n_seconds++] = now - trace->now;
   }
-  trace->now = conic_seconds_now();
+  trace->now = trace_now(trace);
 }
 
 void cli_bench_trace_begin(cli_bench_trace *trace) {
   trace->n_regions = trace->n_seconds = 0;
-  trace->now = conic_seconds_now();
+  trace->now = trace_now(trace);
 }
 
 void cli_bench_trace_watch(void *cookie, const char *name, size_t n_tasks, size_t n_done) {

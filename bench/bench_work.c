@@ -30,6 +30,13 @@ enum {
   FINISH = 75          /* six divisions, two norms, Phong's shading, exposure */
 };
 
+/* Divisions and roots among them. */
+enum {
+  SPLAT_DIVISIONS = 10, /* 1/p_z, the gradients, Cholesky's four, two of the box, the normal's two */
+  RAY_DIVISIONS = 2,    /* of a fragment */
+  FINISH_DIVISIONS = 10
+};
+
 static double image_bytes_a_pixel(const conic_image *image) {
   double bytes = 0.0;
   for (int plane = 0; plane < CONIC_N_PLANES; plane++)
@@ -52,16 +59,21 @@ void cli_bench_work_of(const conic_render_statistics *s, const conic_splats *spl
   work[0] = (cli_bench_work){floats * (9.0 * n + 3.0 * drawn + (splats && splats->opacity ? drawn : 0.0)),
                              sizeof(conic_ray) * rays,
                              FACE * n + (MOVE_CENTER + MOVE_AXES + DEPTH + BOX + SURFACE) * drawn +
-                                 DUAL_CONIC * (drawn - rays) + RAY_SET_UP * rays};
+                                 DUAL_CONIC * (drawn - rays) + RAY_SET_UP * rays,
+                             0.0,
+                             SPLAT_DIVISIONS * drawn,
+                             3.0 * drawn};
   /* Bins: the records in the order of their tiles; at least one entry a splat. */
-  work[1] = (cli_bench_work){
-      0.0, (sizeof(conic_footprint) + sizeof(conic_projected_surface) + sizeof(conic_tile_entry)) * drawn,
-      2.0 * 8.0 * drawn};
+  work[1] = (cli_bench_work){0.0, sizeof(conic_tile_entry) * drawn, 2.0 * 8.0 * drawn,
+                             (sizeof(conic_footprint) + sizeof(conic_projected_surface)) * drawn};
   /* The passes: each record once, what was evaluated for the first is kept for the second, and sums stay at hand. */
   work[2] = (cli_bench_work){sizeof(conic_tile_entry) * drawn + footprints, 0.0,
-                             (coverage + (passes == 1 ? KEEP_NEAREST : RAISE_THRESHOLD)) * fragments};
+                             (coverage + (passes == 1 ? KEEP_NEAREST : RAISE_THRESHOLD)) * fragments, 0.0,
+                             RAY_DIVISIONS * ray_share * fragments};
   work[3] = (cli_bench_work){sizeof(conic_projected_surface) * drawn, 0.0, (SEE + WEIGH + SUM) * fragments};
   if (passes == 1) /* the colours of those that are nearest somewhere */
-    work[3] = (cli_bench_work){0.0, 0.0, (WEIGH + SUM) * (double)s->pixels_covered};
-  work[4] = (cli_bench_work){0.0, image_bytes_a_pixel(image) * pixels, FINISH * (double)s->pixels_covered};
+    work[3] = (cli_bench_work){0.0, 0.0, (WEIGH + SUM) * (double)s->pixels_covered,
+                               .gathered = 3.0 * (double)s->pixels_covered};
+  work[4] = (cli_bench_work){0.0, image_bytes_a_pixel(image) * pixels, FINISH * (double)s->pixels_covered, 0.0,
+                             FINISH_DIVISIONS * (double)s->pixels_covered};
 }

@@ -1,5 +1,6 @@
 #include "bench/chart_axes.h"
 
+#include "bench/bench.h"
 #include "bench/chart_job.h"
 #include "cli/commands/gaussian_commands.h"
 #include "cli/opening_key.h"
@@ -24,7 +25,8 @@ typedef struct axis_job {
   int n_ways;
   axis_way truth, *points; /* the first scene in full detail; of each way */
   conic_image truth_image, image;
-  size_t n_covered; /* pixels of the truth */
+  size_t n_covered;          /* pixels of the truth */
+  cli_bench_machine machine; /* all 0: not measured */
 } axis_job;
 
 /* --- opening --- */
@@ -223,21 +225,40 @@ static uint64_t bytes_of(const conic_drawing *drawing) {
   return bytes;
 }
 
+/* Of splats alone; nothing is known of triangles and of means. */
+static double floor_of(const axis_job *job, const axis_way *way, const conic_shot_outcome *outcome) {
+  const conic_render_statistics *s = &outcome->statistics;
+  cli_bench_work work[CLI_BENCH_N_STAGES];
+  double ms = 0.0;
+  if (!job->machine.threads || s->triangles_in || outcome->samples.end_sample || !s->fragments)
+    return 0.0;
+  cli_bench_work_of(s, NULL, &job->image, way->scene.shot.render.passes, work);
+  for (int i = 0; i < CLI_BENCH_N_STAGES; i++)
+    ms += cli_bench_floor_ms(&work[i], &job->machine);
+  return ms;
+}
+
 /* A frame that brings memory and caches, then timed ones, of which the fastest counts. */
 static conic_status time_point(axis_job *job, int i, int repeat) {
   cli_axis_point *point = &job->chart->points[i];
   axis_way *way = &job->points[i];
   conic_shot_outcome outcome;
   conic_status status = CONIC_OK;
+  double floor_ms = 0.0;
+  const int skips_hidden = way->scene.shot.render.skip_hidden;
   for (int k = 0; k <= repeat && status == CONIC_OK; k++) {
     double start = cli_seconds();
+    way->scene.shot.render.skip_hidden = k ? skips_hidden : 0; /* fragments are counted once */
     status = draw_way(way, &job->image, &outcome);
+    if (status == CONIC_OK && k == 0)
+      floor_ms = floor_of(job, way, &outcome);
     if (k && way->n_frames < MOST_FRAMES)
       way->seconds[way->n_frames++] = cli_seconds() - start;
   }
   if (status != CONIC_OK || point->error.is_measured)
     return status;
   const conic_source_choice *choice = conic_source_chosen(way->scene.source);
+  point->floor_ms = floor_ms;
   point->lod_ms = outcome.statistics.ms.lod;
   point->splats = outcome.statistics.splats_in;
   point->triangles = outcome.statistics.triangles_in;
@@ -281,7 +302,9 @@ static conic_status measure_points(axis_job *job) {
   int n_rounds = job->chart->asked.is_quick ? 1 : 3, repeat = job->chart->asked.is_quick ? 1 : 4;
   const cli_charts_beside *beside = &job->chart->asked.beside;
   conic_status status = CONIC_OK;
-  for (int round = 0; round < n_rounds; round++)
+  if (!job->chart->asked.is_quick)
+    status = cli_bench_machine_measure(job->session, &job->machine);
+  for (int round = 0; round < n_rounds && status == CONIC_OK; round++)
     for (int i = 0; i < job->n_ways && status == CONIC_OK; i++)
       status = time_point(job, i, repeat);
   if (status == CONIC_OK)

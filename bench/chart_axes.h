@@ -16,10 +16,11 @@ enum { CLI_N_CHART_COSTS = 3 };
 /* A scene drawn in one way. */
 typedef struct cli_axis_point {
   cli_chart_way way;
-  int is_of_work; /* it changes the time, and no picture; or it is another program's */
-  double ms;      /* the fastest frame, with the choice of what to draw */
-  double spread;  /* from that to the fastest quarter's end, a share of it: what is nearer is not told apart */
-  double lod_ms;  /* of the frame: the choice */
+  int is_of_work;  /* it changes the time, and no picture; or it is another program's */
+  double ms;       /* the fastest frame, with the choice of what to draw */
+  double spread;   /* from that to the fastest quarter's end, a share of it: what is nearer is not told apart */
+  double floor_ms; /* what the frame must take at least on this machine, as conic bench --floor has it; 0: not known */
+  double lod_ms;   /* of the frame: the choice */
   uint64_t splats, triangles, bytes; /* that the renderer was given; bytes are 0 of what streams */
   double stated_px;                  /* the error that the choice states; 0: nothing was chosen */
   uint64_t hash;                     /* of the picture's colours */

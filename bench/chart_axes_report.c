@@ -63,6 +63,22 @@ static void draw_series(cli_plot *plot, const cli_axis_chart *chart, int first, 
 
 static const cli_plot_style front_style = {.color = "#999999", .is_line = 1, .is_dashed = 1};
 
+static const cli_plot_style floor_style = {.color = "#cc3311", .is_line = 1};
+
+/* What the points of the front would take by the machine's rates alone. */
+static void draw_floor(cli_plot *plot, const cli_axis_chart *chart, axis_error error) {
+  double floors[chart->n_points + 1][2];
+  int n = 0;
+  for (int i = 0; i < chart->n_points; i++)
+    if (chart->points[i].floor_ms > 0.0 && chart->points[i].is_best[CLI_COST_TIME]) {
+      floors[n][0] = chart->points[i].floor_ms;
+      floors[n][1] = error_of(&chart->points[i], error);
+      cli_plot_mark(plot, &floor_style, floors[n][0], floors[n][1], 3.0, "floor");
+      n++;
+    }
+  cli_plot_front(plot, &floor_style, n, floors);
+}
+
 static void draw_panel(cli_plot *plot, const cli_axis_chart *chart, cli_chart_cost cost, axis_error error) {
   static const char *const costs[] = {"ms a frame, with the choice of what is drawn", "splats and triangles",
                                       "bytes of them in memory"};
@@ -70,6 +86,8 @@ static void draw_panel(cli_plot *plot, const cli_axis_chart *chart, cli_chart_co
   cli_plot_axis x = {costs[cost], 1, 0.0, 0.0}, y = {errors[error], 1, 0.0, 0.0};
   for (int i = 0; i < chart->n_points; i++) {
     cli_plot_include(&x, cli_axis_cost(&chart->points[i], cost));
+    if (cost == CLI_COST_TIME)
+      cli_plot_include(&x, chart->points[i].floor_ms);
     cli_plot_include(&y, error_of(&chart->points[i], error));
   }
   cli_plot_panel(plot, "", &x, &y);
@@ -81,10 +99,19 @@ static void draw_panel(cli_plot *plot, const cli_axis_chart *chart, cli_chart_co
       best[n_best++][1] = error_of(&chart->points[i], error);
     }
   cli_plot_front(plot, &front_style, n_best, best);
+  if (cost == CLI_COST_TIME)
+    draw_floor(plot, chart, error);
   for (int first = 0, i = 0; first < chart->n_points; first += length_of_series(chart, first), i++) {
     const cli_plot_style style = cli_plot_style_of(i);
     draw_series(plot, chart, first, cost, error, &style);
   }
+}
+
+static int has_floor(const cli_axis_chart *chart) {
+  int has = 0;
+  for (int i = 0; i < chart->n_points; i++)
+    has |= chart->points[i].floor_ms > 0.0;
+  return has;
 }
 
 static void write_legend(cli_plot *plot, const cli_axis_chart *chart) {
@@ -101,6 +128,8 @@ static void write_legend(cli_plot *plot, const cli_axis_chart *chart) {
     cli_plot_key(plot, &style, name);
   }
   cli_plot_key(plot, &front_style, "best for its cost");
+  if (has_floor(chart))
+    cli_plot_key(plot, &floor_style, "floor of the best, by the machine's rates");
 }
 
 static void draw_chart(FILE *to, const void *cookie) {
@@ -109,7 +138,7 @@ static void draw_chart(FILE *to, const void *cookie) {
   int n_rows = 1;
   for (int i = 0; i < chart->n_points; i++)
     n_rows = chart->points[i].stated_px > 0.0 ? 2 : n_rows;
-  const cli_plot_grid grid = {CLI_N_CHART_COSTS, n_rows * CLI_N_CHART_COSTS, 470, 400, count_series(chart) + 3};
+  const cli_plot_grid grid = {CLI_N_CHART_COSTS, n_rows * CLI_N_CHART_COSTS, 470, 400, count_series(chart) + 4};
   cli_plot plot;
   snprintf(title, sizeof title, "%.60s%s against the first scene in full detail, %d × %d samples a pixel",
            conic_file_name(chart->asked.scenes[0]), chart->asked.n_scenes > 1 ? " and others" : "",

@@ -325,6 +325,14 @@ static int open_hosted(cli_session *session, const conic_context_options *option
   return cli_exit_of(status);
 }
 
+static void (*plans)(void *cookie, conic_context *context);
+static void *plan_cookie;
+
+void cli_session_plan(void (*plan)(void *cookie, conic_context *context), void *cookie) {
+  plans = plan;
+  plan_cookie = cookie;
+}
+
 int cli_session_open(cli_session *session) {
   conic_context_options options;
   conic_context_options_init(&options);
@@ -341,9 +349,13 @@ int cli_session_open(cli_session *session) {
     options.max_texture_bytes = (size_t)session->max_texture_mib << 20;
   if (session->host)
     return open_hosted(session, &options);
+  if (plans)
+    options.threads = 1;
   conic_status status = conic_context_create(&options, &session->context);
   if (status != CONIC_OK)
     return cli_error(cli_exit_of(status), "%s: cannot start: %s", session->command, conic_status_string(status));
+  if (plans)
+    plans(plan_cookie, session->context);
   conic_guard_inputs(session->context, session->replaced_path);
   session->has_bar = !session->is_quiet && cli_shell_has_cursor() && cli_session_speaks(session);
   cli_stopper_begin(session->context, session->command, stopped_exit_code);

@@ -50,6 +50,8 @@ typedef struct cli_session {
 
 /* Makes the context. Returns CLI_DONE or, after an error message, the exit code. */
 int cli_session_open(cli_session *session);
+/* From now on `plan` is told each new context, which has one thread; null: no more. */
+void cli_session_plan(void (*plan)(void *cookie, conic_context *context), void *cookie);
 /* From now on what this thread prints for people is said to a host; null: to nobody but these. Returns who was told it
  * before: a host's functions may run commands themselves. */
 struct cli_host *cli_session_host(struct cli_host *host);

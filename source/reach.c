@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "core/base/base.h"
+#include "core/splats/splats_gather.h"
 
 static int leave_if_far(conic_splats *points, size_t i) {
   double at[3];
@@ -17,12 +18,12 @@ static int leave_if_far(conic_splats *points, size_t i) {
 
 conic_status conic_leave_far_points(conic_context *context, const char *name, conic_splats *points, double low[3],
                                     double high[3]) {
-  size_t n = conic_splats_bounds(points, low, high), n_far = 0;
+  size_t n = conic_splats_bounds_by(context, points, low, high), n_far = 0;
   int are_in_reach = n == points->count && conic_is_in_reach(low, high);
   for (size_t i = 0; !are_in_reach && i < points->count; i++)
     n_far += (size_t)leave_if_far(points, i);
   if (n_far)
-    n = conic_splats_bounds(points, low, high);
+    n = conic_splats_bounds_by(context, points, low, high);
   if (n && n_far)
     conic_log(context, CONIC_LOG_WARNING, "%s: %zu points are left out, which are farther out than 1e20", name, n_far);
   return n ? CONIC_OK

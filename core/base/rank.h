@@ -4,8 +4,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The number at place `rank` of the n numbers, were they sorted; rank < n. Takes time proportional to n. */
-uint32_t conic_bits_of_rank(const uint32_t *numbers, size_t n, size_t rank);
-
-/* The same for floats without NaN; -0 comes before 0. */
+/* The number at place `rank` of n floats without NaN, were they sorted; rank < n. -0 comes before 0. Takes time
+ * proportional to n. */
 float conic_float_of_rank(const float *values, size_t n, size_t rank);

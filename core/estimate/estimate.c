@@ -45,8 +45,9 @@ static int has_bad_color(const conic_splats *points, size_t point) {
 }
 
 /* An invalid colour becomes white, as a missing one is. */
-static void whiten_bad_colors(conic_splats *points) {
-  for (size_t i = 0; i < points->count; i++)
+static void whiten_bad_colors(void *data, size_t begin, size_t end) {
+  const conic_splats *points = data;
+  for (size_t i = begin; i < end; i++)
     if (has_bad_color(points, i))
       for (int channel = 0; channel < 3; channel++)
         points->color[channel][i] = 1.0f;
@@ -225,7 +226,6 @@ static void hand_over_axes(conic_estimate *estimate, conic_model *model) {
       }
     }
   hand_over_dots(estimate, model);
-  whiten_bad_colors(&model->points);
 }
 
 int conic_splats_repair_alone(conic_splats *splats, size_t *n_nowhere) {
@@ -237,7 +237,7 @@ int conic_splats_repair_alone(conic_splats *splats, size_t *n_nowhere) {
       splats->tangent_u[axis][i] = splats->tangent_v[axis][i] = NAN;
     *n_nowhere += state == CONIC_POINT_NOWHERE;
   }
-  whiten_bad_colors(splats);
+  whiten_bad_colors(splats, 0, splats->count);
   return 1;
 }
 
@@ -273,11 +273,13 @@ static conic_status estimate_plain(conic_context *context, const conic_estimate_
   conic_repairs counted = {0};
   conic_estimate estimate = {model, (double)options->cutoff, NULL, {NULL}, {NULL}, NULL, options->ellipse, INFINITY};
   if (options->stays_at_mesh || options->feature_angle_deg > 0.0)
-    estimate.tolerance = conic_mesh_tolerance(&model->points);
+    estimate.tolerance = conic_mesh_tolerance(context, &model->points);
   estimate.states = conic_memory_allocate(context, model->points.count, sizeof *estimate.states);
   conic_status status = CONIC_ERROR_MEMORY;
   if (estimate.states)
     status = estimate_model(context, options, &estimate, &counted);
+  if (status == CONIC_OK)
+    status = conic_slots_for(context, model->points.count, whiten_bad_colors, &model->points, 1.0, 1.0);
   if (status == CONIC_OK) {
     count_repairs(&estimate, &counted);
     counted.clip = drop_clips(&estimate, &model->points);
@@ -301,6 +303,7 @@ conic_status conic_model_take_axes(conic_context *context, conic_model *model, f
   memcpy(estimate.tangent_v, tangent_v, sizeof estimate.tangent_v);
   drop_clips(&estimate, &model->points);
   hand_over_axes(&estimate, model);
+  whiten_bad_colors(&model->points, 0, model->points.count);
   model->points.dot = dot ? dot : model->points.dot;
   conic_memory_release(context, estimate.states);
   return CONIC_OK;

@@ -54,7 +54,7 @@ conic_status conic_estimate_from_faces(conic_context *context, conic_estimate *e
 
 /* How far a splat may stand out from a mesh of these vertices: less than a pixel of a picture that shows the whole
  * mesh. */
-double conic_mesh_tolerance(const conic_splats *points);
+double conic_mesh_tolerance(conic_context *context, const conic_splats *points);
 
 /* Whether the points of a mesh without a triangle are leftovers of its maker, not meant to be seen. */
 static inline int conic_mesh_has_leftovers(size_t n_points, size_t n_loose) {

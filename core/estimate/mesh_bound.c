@@ -261,9 +261,9 @@ static conic_status bound(conic_context *context, mesh_bounding *in, conic_splat
   return status;
 }
 
-double conic_mesh_tolerance(const conic_splats *points) {
+double conic_mesh_tolerance(conic_context *context, const conic_splats *points) {
   double low[3], high[3], diagonal[3];
-  conic_splats_bounds(points, low, high);
+  conic_splats_bounds_by(context, points, low, high);
   conic_subtract(high, low, diagonal);
   return TOLERANCE * conic_length(diagonal);
 }
@@ -273,7 +273,7 @@ conic_status conic_mesh_bound(conic_context *context, double cutoff, double cosi
   mesh_bounding in = {.model = model, .cutoff = cutoff, .cosine = cosine};
   conic_splats made;
   size_t n_dropped = 0;
-  double tolerance = conic_mesh_tolerance(&model->points);
+  double tolerance = conic_mesh_tolerance(context, &model->points);
   in.tolerance2 = tolerance * tolerance;
   conic_status status = conic_incidence_create(context, model, UINT32_MAX / 4, &in.ring);
   if (status == CONIC_OK)

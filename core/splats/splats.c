@@ -1,6 +1,5 @@
 #include <math.h>
 
-#include "core/lanes/lanes.h"
 #include "core/splats/columns.h"
 #include "core/splats/point_values.h"
 #include "core/splats/splats_gather.h"
@@ -165,63 +164,4 @@ conic_status conic_splats_gather(conic_context *context, const conic_splats *fro
   memcpy(gathered->origin, from->origin, sizeof gathered->origin);
   gathered->scalar_origin = from->scalar_origin;
   return CONIC_OK;
-}
-
-/* Bounds columns side by side, several points at a time, from the first on; returns where it ends. */
-static size_t bound_columns(float *const position[3], size_t n, float low[3], float high[3], size_t *n_finite) {
-  const lanes zero = lanes_of(0.0f);
-  lanes lows[3], highs[3];
-  size_t end = n - n % CONIC_LANES;
-  for (int axis = 0; axis < 3; axis++) {
-    lows[axis] = lanes_of(INFINITY);
-    highs[axis] = lanes_of(-INFINITY);
-  }
-  for (size_t k = 0; k < end; k += CONIC_LANES) {
-    lanes at[3], nothing = zero; /* not a number where a coordinate is not finite: it is neither below nor above */
-    for (int axis = 0; axis < 3; axis++) {
-      at[axis] = lanes_load(position[axis] + k);
-      nothing = nothing + at[axis] * zero;
-    }
-    *n_finite += lanes_count(lanes_at_least(nothing, zero));
-    for (int axis = 0; axis < 3; axis++) {
-      lows[axis] = lanes_min(at[axis] + nothing, lows[axis]);
-      highs[axis] = lanes_max(at[axis] + nothing, highs[axis]);
-    }
-  }
-  for (int axis = 0; axis < 3; axis++)
-    for (int lane = 0; lane < CONIC_LANES; lane++) {
-      low[axis] = lows[axis][lane] < low[axis] ? lows[axis][lane] : low[axis];
-      high[axis] = highs[axis][lane] > high[axis] ? highs[axis][lane] : high[axis];
-    }
-  return end;
-}
-
-size_t conic_points_bounds(float *const position[3], size_t stride, const double origin[3], const uint32_t *indices,
-                           size_t n, double minimum[3], double maximum[3]) {
-  float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-  size_t n_finite = 0, first = 0;
-  if (!indices && (!stride || stride == sizeof(float)))
-    first = bound_columns(position, n, low, high, &n_finite);
-  for (size_t k = first; k < n; k++) {
-    float p[3];
-    for (int axis = 0; axis < 3; axis++)
-      p[axis] = conic_column_at(position[axis], stride, indices ? indices[k] : k);
-    if (!(p[0] * 0.0f == 0.0f && p[1] * 0.0f == 0.0f && p[2] * 0.0f == 0.0f))
-      continue;
-    for (int axis = 0; axis < 3; axis++) {
-      low[axis] = p[axis] < low[axis] ? p[axis] : low[axis];
-      high[axis] = p[axis] > high[axis] ? p[axis] : high[axis];
-    }
-    n_finite++;
-  }
-  for (int axis = 0; axis < 3; axis++) {
-    minimum[axis] = n_finite ? origin[axis] + (double)low[axis] : 0.0;
-    maximum[axis] = n_finite ? origin[axis] + (double)high[axis] : 0.0;
-  }
-  return n_finite;
-}
-
-size_t conic_splats_bounds(const conic_splats *splats, double minimum[3], double maximum[3]) {
-  size_t n = conic_splats_fault(splats) ? 0 : splats->count;
-  return conic_points_bounds(splats->position, splats->strides.position, splats->origin, NULL, n, minimum, maximum);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "conic/splats.h"
+#include "conic/triangles.h"
 
 /* A new set whose splat i is splat sources[i] of `from`; without clip lines. On failure *gathered is empty.
  * Errors: MEMORY. */
@@ -17,3 +18,8 @@ conic_status conic_splats_resize(conic_context *context, conic_splats *splats, s
  * finite. Without one the bounds are 0. */
 size_t conic_points_bounds(float *const position[3], size_t stride, const double origin[3], const uint32_t *indices,
                            size_t n, double minimum[3], double maximum[3]);
+
+/* The same as without _by, on the context's threads; not within a region. Null: the calling one does it. */
+size_t conic_splats_bounds_by(conic_context *context, const conic_splats *splats, double minimum[3], double maximum[3]);
+size_t conic_drawing_bounds_by(conic_context *context, const conic_drawing *drawing, double minimum[3],
+                               double maximum[3]);

@@ -95,9 +95,10 @@ size_t conic_triangles_bounds(const conic_triangles *triangles, double minimum[3
                              (const uint32_t *)triangles->corners, n, minimum, maximum);
 }
 
-size_t conic_drawing_bounds(const conic_drawing *drawing, double minimum[3], double maximum[3]) {
+size_t conic_drawing_bounds_by(conic_context *context, const conic_drawing *drawing, double minimum[3],
+                               double maximum[3]) {
   double low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
-  size_t n_splats = drawing->splats ? conic_splats_bounds(drawing->splats, minimum, maximum) : 0;
+  size_t n_splats = drawing->splats ? conic_splats_bounds_by(context, drawing->splats, minimum, maximum) : 0;
   size_t n_corners = drawing->triangles ? conic_triangles_bounds(drawing->triangles, low, high) : 0;
   for (int axis = 0; axis < 3; axis++) {
     if (n_splats == 0 || (n_corners && low[axis] < minimum[axis]))
@@ -106,6 +107,10 @@ size_t conic_drawing_bounds(const conic_drawing *drawing, double minimum[3], dou
       maximum[axis] = high[axis];
   }
   return n_splats + n_corners;
+}
+
+size_t conic_drawing_bounds(const conic_drawing *drawing, double minimum[3], double maximum[3]) {
+  return conic_drawing_bounds_by(NULL, drawing, minimum, maximum);
 }
 
 double conic_drawing_near(const conic_drawing *drawing) {

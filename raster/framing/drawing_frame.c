@@ -7,6 +7,7 @@
 #include "core/image/framing.h"
 #include "core/splats/columns.h"
 #include "core/splats/near.h"
+#include "core/splats/splats_gather.h"
 #include "raster/framing/outline_reach.h"
 
 enum {
@@ -145,10 +146,10 @@ static conic_status leave_out_strays(conic_context *context, const conic_splats_
 }
 
 /* conic_drawing_bounds of what all processes have. */
-static size_t find_shared_bounds(const conic_splats_shares *shares, const conic_drawing *drawing, double low[3],
+static size_t find_shared_bounds(conic_context *context, const conic_splats_shares *shares, const conic_drawing *drawing, double low[3],
                                  double high[3]) {
   return shares->team ? conic_shares_bounds(shares, drawing->splats, low, high)
-                      : conic_drawing_bounds(drawing, low, high);
+                      : conic_drawing_bounds_by(context, drawing, low, high);
 }
 
 static conic_status frame_entered(conic_context *context, const conic_splats_shares *shares,
@@ -157,7 +158,7 @@ static conic_status frame_entered(conic_context *context, const conic_splats_sha
   double low[3], high[3], diagonal[3], rows[3][3];
   stand found;
   conic_outline_reach r = {.drawing = drawing, .cutoff = (double)cutoff, .n = n_turns * N_SIDES};
-  size_t n_finite = find_shared_bounds(shares, drawing, low, high);
+  size_t n_finite = find_shared_bounds(context, shares, drawing, low, high);
   *near_z = conic_near_of_box(low, high);
   if (n_finite == 0)
     return conic_camera_frame(context, framing, low, high, camera);

@@ -62,6 +62,12 @@ has '^| 40 | frame |'
 [[ $(grep -c '"schedules"' simulated.json) -eq 1 && $(grep -c '"identical": true' simulated.json) -eq 2 ]] ||
   fail "not one list of schedules"
 [[ $(grep -A4 '"name": "project"' simulated.json | grep -c '"tasks": 15,') -eq 2 ]] || fail "not 15 chunks of 2048"
+run 0 bench --command "render sphere.ply -o whole.pfm --size 64x48 -q" --repeat 2 --simulate-threads 4,40
+has '^| 40 | frame |'
+has '^| | tile | [0-9]'
+run 0 render sphere.ply -o plain.pfm --size 64x48
+cmp whole.pfm plain.pfm || fail "a command that is simulated does something else"
+run 3 bench --command "render none.ply -o whole.pfm" --simulate-threads 4
 run 2 bench --scenes sphere-2k --simulate-threads 1
 run 2 bench --scenes sphere-2k --simulate-threads 4 --turntable 5
 

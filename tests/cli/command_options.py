@@ -57,7 +57,7 @@ CASES = {
     "chart": {"-o": "more", "--quick": None, "--over": "samples", "--time": "1", "--beside": "x=1:picture.exr",
               "--truth": "2", "--pixels": "5", "--accumulate": "2"},
     "bench": {"--allow-outside": None, "--scenes": "sphere-1k", "--methods": "ray", "--profiles": "exact", "--isa": "scalar", "--threads": "1",
-              "--simulate-threads": "2", "--size": "40x40", "--camera": "camera.json", "--view": "0", "--cull": "back",
+              "--simulate-threads": "2", "--command": "make sphere -n 9 -o s.ply", "--size": "40x40", "--camera": "camera.json", "--view": "0", "--cull": "back",
               "--device": "opencl", "--allow-inexact": None, "--error": "4", "--turntable": "2", "--repeat": "3",
               "--quick": None, "--compare": "none.json", "--publish": "p.json", "--curve": None, "--machine": None,
               "--kernels": None, "--floor": None},

@@ -228,6 +228,7 @@ write bench-old bench bench --scenes sphere-2k --size 128x128 --isa scalar --thr
 cp runs/bench-old.json old.json
 write bench bench bench --scenes sphere-2k --size 128x128 --isa scalar --threads 1 --repeat 2 --floor --compare old.json
 write bench-simulated bench bench --scenes sphere-2k --size 128x128 --threads 1 --repeat 3 --simulate-threads 2,40
+write bench-command bench bench --command "render knot.cot -o b.pfm --size 64x48" --repeat 2 --simulate-threads 4
 write bench-chosen bench bench knot.cot --error 2 --size 64x48 --threads 1 --repeat 1
 write info info_model info knot.ply --check
 write info-mesh info_model info triangle.obj
