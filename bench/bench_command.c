@@ -190,6 +190,8 @@ static int measure_plan(cli_session *session, cli_bench_job *job) {
 
 static int simulate_whole(cli_session *session, cli_bench_job *job) {
   int exit_code = cli_bench_whole_run(job);
+  if (exit_code == CLI_DONE)
+    exit_code = cli_session_open(session);
   if (exit_code == CLI_DONE && cli_json_leaves_text(session))
     cli_bench_print_schedules(job->lines);
   return exit_code == CLI_DONE ? cli_json_write(session, report_bench, job) : exit_code;

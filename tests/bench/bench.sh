@@ -65,7 +65,7 @@ has '^| 40 | frame |'
 run 0 bench --command "render sphere.ply -o whole.pfm --size 64x48 -q" --repeat 2 --simulate-threads 4,40
 has '^| 40 | frame |'
 has '^| | tile | [0-9]'
-run 0 render sphere.ply -o plain.pfm --size 64x48
+run_as_typed 0 render sphere.ply -o plain.pfm --size 64x48
 cmp whole.pfm plain.pfm || fail "a command that is simulated does something else"
 run 3 bench --command "render none.ply -o whole.pfm" --simulate-threads 4
 run 2 bench --scenes sphere-2k --simulate-threads 1
@@ -93,7 +93,7 @@ run 0 bench --curve --quick --repeat 1 --threads 1 --size 64x64
 has '^cost curve'
 has '^sphere-100k@512x512/conic/'
 run 0 bench --floor --scenes sphere-2k --threads 1 "${small[@]}" --json floor.json
-has '^1 thread: reads [0-9.]*, writes [0-9.]*, copies [0-9.]* GB/s'
+has '^1 thread: reads [0-9.]*, writes [0-9.]*, copies [0-9.]*, moves [0-9.]* GB/s'
 has '^| accumulate | '
 grep -q '"floor_ms": {' floor.json || fail "no floor in the statistics"
 run 0 bench --machine --threads 1 --json -

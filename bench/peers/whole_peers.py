@@ -1,0 +1,68 @@
+"""Whole commands by libraries for Python, which `whole` beside this runs and measures: from a file to a picture, or to the
+normals of its points.
+
+    python3 whole_peers.py f3d|pyvista|open3d IN OUT.png          a picture of 1024 x 1024
+    python3 whole_peers.py open3d-normals|nanoflann IN OUT.npy    normals; nanoflann: the 16 nearest points alone
+    python3 whole_peers.py --check NAME                           fails where it cannot be had
+"""
+import sys
+
+SIZE = 1024
+NEIGHBOURS = 16
+
+
+def draw_f3d(path, out):
+    import f3d
+    engine = f3d.Engine.create(True)
+    engine.window.size = SIZE, SIZE
+    engine.scene.add(path)
+    engine.window.render_to_image().save(out)
+
+
+def draw_pyvista(path, out):
+    import pyvista
+    plotter = pyvista.Plotter(off_screen=True, window_size=(SIZE, SIZE))
+    data = pyvista.read(path)
+    scalars = "RGB" if "RGB" in data.point_data else None
+    plotter.add_mesh(data, scalars=scalars, rgb=scalars is not None)
+    plotter.screenshot(out)
+
+
+def draw_open3d(path, out):
+    import open3d
+    cloud = open3d.io.read_point_cloud(path)
+    renderer = open3d.visualization.rendering.OffscreenRenderer(SIZE, SIZE)
+    material = open3d.visualization.rendering.MaterialRecord()
+    renderer.scene.add_geometry("cloud", cloud, material)
+    box = cloud.get_axis_aligned_bounding_box()
+    renderer.setup_camera(40.0, box.get_center(), box.get_center() + box.get_extent().max() * 2.0, [0.0, 1.0, 0.0])
+    open3d.io.write_image(out, renderer.render_to_image())
+
+
+def normals_open3d(path, out):
+    import numpy
+    import open3d
+    cloud = open3d.io.read_point_cloud(path)
+    cloud.estimate_normals(open3d.geometry.KDTreeSearchParamKNN(NEIGHBOURS))
+    numpy.save(out, numpy.asarray(cloud.normals))
+
+
+def neighbours_nanoflann(path, out):
+    import numpy
+    import open3d  # which reads the file
+    import pynanoflann
+    points = numpy.asarray(open3d.io.read_point_cloud(path).points, dtype=numpy.float32)
+    tree = pynanoflann.KDTree(n_neighbors=NEIGHBOURS)
+    tree.fit(points)
+    numpy.save(out, tree.kneighbors(points)[1])
+
+
+PEERS = {"f3d": (draw_f3d, ["f3d"]), "pyvista": (draw_pyvista, ["pyvista"]), "open3d": (draw_open3d, ["open3d"]),
+         "open3d-normals": (normals_open3d, ["open3d"]),
+         "nanoflann": (neighbours_nanoflann, ["pynanoflann", "open3d"])}
+
+if sys.argv[1] == "--check":
+    for module in PEERS[sys.argv[2]][1]:
+        __import__(module)
+else:
+    PEERS[sys.argv[1]][0](*sys.argv[2:])
