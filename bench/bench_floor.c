@@ -28,9 +28,19 @@ void cli_bench_report_machine(cli_json *json, const cli_bench_machine *machines,
   cli_json_close(json);
 }
 
+/* How much of a frame's time its threads worked: others take the rest of it. */
+static double share_of_work(const cli_bench_line *line) {
+  double share = line->cpu_ms / ((double)line->threads * line->statistics.ms.frame);
+  return share > 0.0 && share < 1.0 ? share : 1.0;
+}
+
+static double stage_ms(const cli_bench_line *line, int i) {
+  return share_of_work(line) * cli_bench_stage_ms(&line->statistics.ms, i);
+}
+
 /* A stage's floor over what it takes. */
 static double share_of_floor(const cli_bench_line *line, const cli_bench_machine *machine, int i) {
-  double ms = cli_bench_stage_ms(&line->statistics.ms, i);
+  double ms = stage_ms(line, i);
   return ms > 0.0 ? cli_bench_floor_ms(&line->work[i], machine) / ms : 0.0;
 }
 
@@ -58,7 +68,7 @@ void cli_bench_print_floor(const cli_bench_line *line, const cli_bench_machine *
   puts("|---|---|---|---|---|---|---|---|---|---|---|---|");
   for (int i = 0; i < CLI_BENCH_N_STAGES; i++) {
     const cli_bench_work *work = &line->work[i];
-    double least = cli_bench_floor_ms(work, machine), ms = cli_bench_stage_ms(&line->statistics.ms, i);
+    double least = cli_bench_floor_ms(work, machine), ms = stage_ms(line, i);
     floor_ms += least;
     if (least == 0.0 && ms == 0.0) /* a stage that these do not have */
       continue;
@@ -67,8 +77,9 @@ void cli_bench_print_floor(const cli_bench_line *line, const cli_bench_machine *
            1e-6 * work->operations, 1e-6 * work->divisions, 1e-6 * work->gathered, memory_ms(work, machine),
            compute_ms(work, machine), least, ms, 100.0 * share_of_floor(line, machine, i));
   }
-  printf("| frame | | | | | | | | | %.2f | %.2f | %.0f %% |\n", floor_ms, line->statistics.ms.frame,
-         100.0 * floor_ms / line->statistics.ms.frame);
+  printf("| frame | | | | | | | | | %.2f | %.2f | %.0f %% |\n", floor_ms,
+         share_of_work(line) * line->statistics.ms.frame,
+         100.0 * floor_ms / (share_of_work(line) * line->statistics.ms.frame));
 }
 
 void cli_bench_report_shares(cli_json *json, const cli_bench_line *line, const cli_bench_machine *machine) {
@@ -78,7 +89,7 @@ void cli_bench_report_shares(cli_json *json, const cli_bench_line *line, const c
     floor_ms += cli_bench_floor_ms(&line->work[i], machine);
     cli_json_number(json, cli_bench_stages[i], share_of_floor(line, machine, i));
   }
-  cli_json_number(json, "frame", floor_ms / line->statistics.ms.frame);
+  cli_json_number(json, "frame", floor_ms / (share_of_work(line) * line->statistics.ms.frame));
   cli_json_close(json);
 }
 
