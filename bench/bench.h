@@ -1,5 +1,5 @@
 /* What the parts of `conic bench` share: scenes, the lines that are measured, the machine beneath.
- * docs/reference/benchmark.md has the definitions. */
+ * docs/reference/performance.md has the definitions. */
 #pragma once
 
 #include "cli/device_option.h"

@@ -1,4 +1,4 @@
-/* Scenes of Gaussians on the bench: a profile takes the place of a method. docs/reference/benchmark.md says which stage
+/* Scenes of Gaussians on the bench: a profile takes the place of a method. docs/reference/performance.md says which stage
  * is which. */
 
 #include "bench/bench.h"
