@@ -225,18 +225,14 @@ conic_status cli_suite_write_exr(conic_context *context, const char *path, const
 }
 
 conic_status cli_suite_write_npy(conic_context *context, const char *path, const suite_planes *planes) {
-  char head[118]; /* makes a multiple of 64 with the ten bytes before it */
+  const size_t shape[] = {SUITE_RANGES, (size_t)planes->height, (size_t)planes->width, SUITE_CHANNELS};
+  unsigned char head[CONIC_NUMPY_HEAD];
   conic_output *output;
   conic_status status = conic_output_open(context, path, &output);
   if (status != CONIC_OK)
     return status;
   FILE *to = conic_output_stream(output);
-  int n = snprintf(head, sizeof head, "{'descr': '<f4', 'fortran_order': False, 'shape': (%d, %d, %d, %d), }",
-                   SUITE_RANGES, planes->height, planes->width, SUITE_CHANNELS);
-  memset(head + n, ' ', sizeof head - (size_t)n);
-  head[sizeof head - 1] = '\n';
-  fwrite("\x93NUMPY\x01\x00", 1, 8, to);
-  put_number(to, sizeof head, 2);
+  conic_numpy_head("<f4", shape, 4, head);
   fwrite(head, 1, sizeof head, to);
   for (size_t i = 0; i < cli_suite_at(planes, SUITE_RANGES, 0); i++)
     put_bits(to, planes->numbers[i]);

@@ -114,3 +114,18 @@ double conic_numpy_array_at(const conic_numpy_array *array, size_t i) {
   int shift = 64 - 8 * (int)n_bytes;
   return array->type == 'u' ? (double)bits : (double)((int64_t)(bits << shift) >> shift);
 }
+
+void conic_numpy_head(const char *type, const size_t *shape, int n_axes, unsigned char head[CONIC_NUMPY_HEAD]) {
+  enum { START = 10 };
+  char axes[CONIC_NUMPY_MOST_AXES * 22 + 1] = "", text[CONIC_NUMPY_HEAD - START + 1];
+  for (int axis = 0, n = 0; axis < n_axes; axis++)
+    n += snprintf(axes + n, sizeof axes - (size_t)n, "%zu,%s", shape[axis], axis + 1 < n_axes ? " " : "");
+  if (n_axes > 1)
+    axes[strlen(axes) - 1] = '\0';
+  int n = snprintf(text, sizeof text, "{'descr': '%s', 'fortran_order': False, 'shape': (%s), }", type, axes);
+  memset(head, ' ', CONIC_NUMPY_HEAD);
+  memcpy(head, "\x93NUMPY\x01\x00", 8);
+  conic_store_bits(head + 8, 2, CONIC_NUMPY_HEAD - START);
+  memcpy(head + START, text, (size_t)n);
+  head[CONIC_NUMPY_HEAD - 1] = '\n';
+}

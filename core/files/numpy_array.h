@@ -18,3 +18,8 @@ conic_status conic_numpy_array_open(conic_context *context, const char *file, co
 
 /* Number i, which must exist, in C's order, whatever the file's order is. */
 double conic_numpy_array_at(const conic_numpy_array *array, size_t i);
+
+enum { CONIC_NUMPY_HEAD = 128 };
+
+/* Writes the start of an .npy, of numbers of a type such as "<f4", in C's order. */
+void conic_numpy_head(const char *type, const size_t *shape, int n_axes, unsigned char head[CONIC_NUMPY_HEAD]);

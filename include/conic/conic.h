@@ -29,6 +29,7 @@
 #include "conic/export.h"
 #include "conic/gather.h"
 #include "conic/gaussian_gradient.h"
+#include "conic/gaussian_intermediates.h"
 #include "conic/gaussian_judge.h"
 #include "conic/gaussian_oracle.h"
 #include "conic/gaussian_render.h"

@@ -150,10 +150,9 @@ static void admit_square(const oracle_doubting *d, bounded radius, oracle_uncert
   }
 }
 
-static void admit_box(const oracle_doubting *d, const bounded extent[2], oracle_uncertain *g) {
+static void admit_box(const oracle_doubting *d, const bounded radius[2], oracle_uncertain *g) {
   for (int axis = 0; axis < 2; axis++) {
-    bounded radius = bounded_scale(d->view->rules->disc_extent, extent[axis], d->model->setup_roundoff);
-    double least = ceil(bounded_low(radius)), most = ceil(bounded_high(radius));
+    double least = ceil(bounded_low(radius[axis])), most = ceil(bounded_high(radius[axis]));
     double low = bounded_low(g->place[axis]), high = bounded_high(g->place[axis]);
     double ulp = d->model->is_setup_in_float ? 2e-7 * (fabs(low) + most + 16.0) : 2e-9;
     const double first[2] = {low - most - ulp, high - least + ulp};
@@ -322,6 +321,20 @@ static int bound_limited_form(const oracle_doubting *d, const bounded c[3], boun
   return 1;
 }
 
+int conic_oracle_has_radii(const conic_profile_row *rules) {
+  return rules->shape == CONIC_SHAPE_DISC || rules->coverage == CONIC_COVERAGE_TILES || rules->is_beyond_stop;
+}
+
+/* As far as a Gaussian of 3.33 standard deviations reaches, or its least alpha, by a logarithm that may be fast. */
+static bounded extent_in_deviations(const oracle_doubting *d, bounded opacity) {
+  const double most = 3.33, ratio = opacity.v / d->limits.alpha_least, least = bounded_low(opacity);
+  if (!(ratio > 1.0 && least > 0.0))
+    return (bounded){0.0, bounded_high(opacity) > d->limits.alpha_least ? most : 0.0};
+  double log = conic_oracle_log(ratio), unit = 8.0 * ORACLE_FLOAT_UNIT;
+  bounded root = bounded_root((bounded){2.0 * log, 2.0 * (opacity.off / least + unit * (1.0 + log))}, unit);
+  return root.v > most ? (bounded){most, oracle_max(most - bounded_low(root), unit * most)} : root;
+}
+
 static int bound_ellipse(const oracle_doubting *d, const bounded_frame *f, oracle_uncertain *g) {
   const conic_profile_row *rules = d->view->rules;
   const double unit = f->unit, h = rules->dilation;
@@ -354,7 +367,12 @@ static int bound_ellipse(const oracle_doubting *d, const bounded_frame *f, oracl
     bounded apart = bounded_subtract(square_of(mean, unit), wide, unit);
     apart.v = oracle_max(apart.v, 0.1);
     bounded root = bounded_root(bounded_add(mean, bounded_root(apart, unit), unit), unit);
-    admit_square(d, bounded_scale(3.0, root, unit), g);
+    g->radius[0] = g->radius[1] = bounded_scale(3.0, root, unit);
+    admit_square(d, g->radius[0], g);
+  } else if (conic_oracle_has_radii(rules)) {
+    const bounded extent = extent_in_deviations(d, g->opacity);
+    for (int axis = 0; axis < 2; axis++)
+      g->radius[axis] = bounded_multiply(extent, bounded_root(c[2 * axis], unit), unit);
   }
   for (int axis = 0; axis < 2 && rules->clip > 0.0; axis++) {
     const double half = 0.5 * (axis ? d->view->camera->height : d->view->camera->width);
@@ -363,6 +381,9 @@ static int bound_ellipse(const oracle_doubting *d, const bounded_frame *f, oracl
   }
   if (conic_profile_limits_axes(rules) && !bound_limited_form(d, c, wide, g))
     return 0;
+  memcpy(g->covariance, c, sizeof c);
+  g->is_placed = 1;
+  g->may_lack_inverse = !(bounded_low(wide) > 0.0);
   const double grown = rules->spread_least + rules->axis_least;
   const bounded variance[2] = {{c[0].v + grown, c[0].off}, {c[2].v + grown, c[2].off}};
   double q = reach_in_q(d, g->opacity);
@@ -448,6 +469,7 @@ static int place_ray(const oracle_doubting *d, const bounded_frame *f, oracle_un
                       bounded_scale(focal[axis], bounded_divide(f->mean[axis], f->mean[2], f->unit), f->unit), f->unit);
   }
   bound_offset(d, f->unit, g);
+  g->is_placed = 1;
   double q = reach_in_q(d, g->opacity);
   reach_of_ellipsoid(d, f, q, g);
   return q >= 0.0 && bound_ray(d, f, g);
@@ -488,15 +510,20 @@ static int bound_disc(const oracle_doubting *d, const bounded_frame *f, oracle_u
   const conic_profile_row *rules = d->view->rules;
   bounded extent[2];
   double q = reach_in_q(d, g->opacity);
-  if (!(q >= 0.0) || !bound_disc_box(d, f, g, extent))
+  if (!bound_disc_box(d, f, g, extent))
     return 0;
   if (rules->coverage == CONIC_COVERAGE_TILES) {
     bounded radius = extent[0].v > extent[1].v ? extent[0] : extent[1];
     radius.off = oracle_max(extent[0].off, extent[1].off);
     radius.v = oracle_max(radius.v, 3.0 * 0.707106);
+    g->radius[0] = g->radius[1] = radius;
     admit_square(d, radius, g);
-  } else
-    admit_box(d, extent, g);
+  } else {
+    for (int axis = 0; axis < 2; axis++)
+      g->radius[axis] = bounded_scale(rules->disc_extent, extent[axis], d->model->setup_roundoff);
+    admit_box(d, g->radius, g);
+  }
+  g->is_placed = 1;
   reach_of_ellipsoid(d, f, q, g);
   for (int axis = 0; axis < 2; axis++) { /* or the dot, whose variance is ½ px² */
     double half = sqrt(0.5 * q) + reach_margin_px + g->place[axis].off;
@@ -504,7 +531,7 @@ static int bound_disc(const oracle_doubting *d, const bounded_frame *f, oracle_u
     g->reach[1][axis] = oracle_max(g->reach[1][axis], g->place[axis].v + half);
   }
   bound_offset(d, f->unit, g);
-  return bound_ray(d, f, g);
+  return q >= 0.0 && bound_ray(d, f, g);
 }
 
 /* Whether the mean is beyond near: the double run's answer, and whether it is in doubt. 0: nowhere. */
@@ -539,6 +566,7 @@ int conic_oracle_uncertain_place(const oracle_doubting *d, size_t i, oracle_unce
   for (int axis = 0; axis < 2; axis++) {
     g->sure[0][axis] = g->wide[0][axis] = -INFINITY;
     g->sure[1][axis] = g->wide[1][axis] = INFINITY;
+    g->radius[axis] = bounded_of(-1.0);
   }
   double opacity = (double)d->set->opacity[i];
   g->opacity = bounded_of(opacity);

@@ -28,9 +28,16 @@ typedef struct oracle_uncertain {
   bounded form[3];
   bounded g[3][3], c[3][3], e[3]; /* of rays: at that pixel, and how they grow in x and in y */
   bounded rows[3][3];             /* of a disc: from its plane to the screen */
+  int is_placed;                  /* these are known, though it may be drawn nowhere: */
+  int may_lack_inverse;           /* its ellipse may be none */
+  bounded covariance[3];          /* of an ellipse, dilated: xx, xy, yy */
+  bounded radius[2];              /* by the profile's rule, before it is rounded up; negative: it has none */
   double reach[2][2];             /* beyond it on the screen α is below its least for sure: minimum, maximum */
   double sure[2][2], wide[2][2];  /* pixels' centres that the rules of coverage admit: for sure, perhaps */
 } oracle_uncertain;
+
+/* Whether the profile has radii, and with them tiles. */
+int conic_oracle_has_radii(const conic_profile_row *rules);
 
 /* Sets up Gaussian i but for its colour. Returns 0 where it is drawn nowhere, whatever rounding does. */
 int conic_oracle_uncertain_place(const oracle_doubting *d, size_t i, oracle_uncertain *g);
