@@ -4,6 +4,7 @@
 #include "cli/commands/gaussian_commands.h"
 #include "cli/commands/verify_reference.h"
 #include "cli/judge/judge_gradients.h"
+#include "cli/judge/judge_intermediates.h"
 #include "cli/judge/judge_job.h"
 #include "cli/judge/suite_judge.h"
 #include "cli/outputs.h"
@@ -182,7 +183,10 @@ static int run_judge(cli_session *session, int argc, char **argv) {
   suite_run suite = {.most_level = 0}; /* unused here: its options are for the help */
   if (names_option(argc, argv, "--suite"))
     return cli_suite_run(session, argc, argv);
-  cli_gradient_files gradients = {NULL}; /* unused here, too */
+  if (names_option(argc, argv, "--intermediates"))
+    return cli_intermediates_run(session, argc, argv);
+  cli_gradient_files gradients = {NULL}; /* unused here, as is the next */
+  const char *intermediates = NULL;
   if (names_option(argc, argv, "--gradients"))
     return cli_gradients_run(session, argc, argv);
   conic_picture_options_init(&job.reading);
@@ -216,6 +220,7 @@ static int run_judge(cli_session *session, int argc, char **argv) {
       {"time", CLI_FLAG, &job.shows_times, NULL, "print what each stage took", .acts.is_work = 1},
       CLI_SUITE_OPTIONS(suite),
       CLI_GRADIENT_OPTIONS(gradients),
+      CLI_INTERMEDIATES_OPTION(intermediates),
   };
   int exit_code = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, &job.scene);
   job.reading.rounding = (conic_code_rounding)rounding;
@@ -233,6 +238,7 @@ const cli_command cli_judge = {
     .usage = "conic judge SCENE --camera C [--view V] --picture P [--profile NAME | --method M] [--json FILE] "
              "[--report F.html] [--map F.png] [--max-wrong N] [camera and render options]\n"
              "       conic judge SCENE --camera C --weights W.exr --gradients G.ply --profile NAME [--raw]\n"
+             "       conic judge SCENE --camera C --intermediates MINE.npz --profile NAME\n"
              "       conic judge --suite FOLDER --pictures FOLDER [--profile NAMES] [--junit FILE]",
     .run = run_judge,
     .description = "Takes a picture that any renderer drew of the scene, bounds what each pixel can be at most and at "
