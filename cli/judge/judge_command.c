@@ -3,6 +3,7 @@
 #include "cli/command.h"
 #include "cli/commands/gaussian_commands.h"
 #include "cli/commands/verify_reference.h"
+#include "cli/host.h"
 #include "cli/judge/judge_gradients.h"
 #include "cli/judge/judge_intermediates.h"
 #include "cli/judge/judge_job.h"
@@ -164,8 +165,12 @@ static int check_judge(cli_session *session, cli_judge_job *job) {
   return exit_code == CLI_DONE ? cli_scene_inputs_stay(session, &job->scene, outputs, 2) : exit_code;
 }
 
-static int names_option(int argc, char **argv, const char *option) {
+/* Whether an option is among the arguments, or among a host's values. */
+static int names_option(const cli_session *session, int argc, char **argv, const char *option) {
   size_t n = strlen(option);
+  for (size_t i = 0; session->host && i < session->host->n_values; i++)
+    if (strcmp(session->host->values[i].name, option + 2) == 0)
+      return 1;
   for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
     if (strncmp(argv[i], option, n) == 0 && (argv[i][n] == '\0' || argv[i][n] == '='))
       return 1;
@@ -181,13 +186,13 @@ static int run_judge(cli_session *session, int argc, char **argv) {
   cli_judge_job job = {.floats = CONIC_FLOATS_FAST, .argc = argc, .argv = argv};
   int rounding = CONIC_CODES_EITHER;
   suite_run suite = {.most_level = 0}; /* unused here: its options are for the help */
-  if (names_option(argc, argv, "--suite"))
+  if (names_option(session, argc, argv, "--suite"))
     return cli_suite_run(session, argc, argv);
-  if (names_option(argc, argv, "--intermediates"))
+  if (names_option(session, argc, argv, "--intermediates"))
     return cli_intermediates_run(session, argc, argv);
   cli_gradient_files gradients = {NULL}; /* unused here, as is the next */
   const char *intermediates = NULL;
-  if (names_option(argc, argv, "--gradients"))
+  if (names_option(session, argc, argv, "--gradients"))
     return cli_gradients_run(session, argc, argv);
   conic_picture_options_init(&job.reading);
   cli_scene_defaults(&job.scene);

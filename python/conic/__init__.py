@@ -9,7 +9,7 @@ Functions are the program's commands, and their keywords the commands' options; 
 
 from ._camera import Camera, list_cameras
 from ._commands import (command, conformance, convert, csg, devices, diff, explain, gradient, hybrid, info, judge,
-                        layers, make, mls, octree, prepare, render, turntable, verify)
+                        judge_intermediates, layers, make, mls, octree, prepare, project, render, turntable, verify)
 from ._library import features, release, version
 from ._picture import Picture
 from ._shot import Shot
@@ -23,6 +23,6 @@ __all__ = [
     "ArgumentError", "Camera", "Cancelled", "ConicWarning", "Error", "Gaussians", "InputError", "Mesh",
     "OutOfMemoryError", "OutputError", "Picture", "Scene", "Shot", "Splats", "UnsupportedError", "command",
     "conformance", "convert", "csg", "devices", "diff", "explain", "features", "gradient", "hybrid", "info", "judge",
-    "layers", "list_cameras", "make", "mls", "octree", "open", "prepare", "release", "render", "turntable", "verify",
-    "version"
+    "judge_intermediates", "layers", "list_cameras", "make", "mls", "octree", "open", "prepare", "project", "release",
+    "render", "turntable", "verify", "version"
 ]

@@ -145,7 +145,7 @@ class _Call:
             return self.lend("image", picture.image())
         pixels = _pixels(picture, (3, 4))
         if pixels.dtype == numpy.uint8:
-            path = self._temporary("png")
+            path = self.temporary("png")
             with open(path, "wb") as file:
                 file.write(encode_png(numpy.ascontiguousarray(pixels)))
             return path
@@ -163,15 +163,15 @@ class _Call:
             planes = {name: _whole(plane, name) for name, plane in picture.items() if name != "statistics"}
             if not planes:
                 raise ArgumentError("picture: the dict is empty")
-            path = self._temporary("npz")
+            path = self.temporary("npz")
             numpy.savez(path, **planes)  # type: ignore[arg-type]
             return path
         pixels = numpy.ascontiguousarray(_pixels(picture, channels))
-        path = self._temporary("npy")
+        path = self.temporary("npy")
         numpy.save(path, pixels)
         return path
 
-    def _temporary(self, ending: str) -> str:
+    def temporary(self, ending: str) -> str:
         self._folder = self._folder or tempfile.TemporaryDirectory(prefix="conic-")
         self._files.append(os.path.join(self._folder.name, f"picture{len(self._files)}.{ending}"))
         return self._files[-1]
@@ -183,13 +183,16 @@ class _Call:
         return kept_of_thread(), False
 
     def run(self, *, progress: Any = None, frames: Optional[Frames] = None, keeps: bool = False,
-            threads: Optional[int] = None) -> Tuple[int, bytes]:
+            threads: Optional[int] = None, then: Any = None) -> Tuple[int, bytes]:
         if threads:
             self.values.append(("threads", int(threads)))
         kept, keeps_source = self.keeper() if keeps else (None, False)
         try:
-            return run([self.command, "--", *self.inputs], self.values, loans=self.loans, progress=progress,
+            told = run([self.command, "--", *self.inputs], self.values, loans=self.loans, progress=progress,
                        frames=frames, kept=kept, keeps_source=keeps_source, files=self._files)
+            if then:  # while the temporary files are there
+                then()
+            return told
         except ArgumentError as failure:
             raise ArgumentError(self._in_python(str(failure))) from None
         finally:
@@ -353,6 +356,39 @@ def judge(scene: AnyScene, camera: AnyCamera, picture: Any, *, progress: Any = N
     call.input(scene)
     call.camera(camera)
     call.add("picture", call.evidence(picture))
+    call.options(options)
+    return call.ask(keeps=True, progress=progress, threads=threads)
+
+
+def project(scene: AnyScene, camera: AnyCamera, *, progress: Any = None, threads: Optional[int] = None,
+            **options: Options) -> Dict[str, numpy.ndarray]:
+    """What a profile makes of each Gaussian before it is composited, by gsplat's names: "radii", "means2d", "depths",
+    "conics", "opacities", "colors", "isect_ids", "flatten_ids" …, and what floats may make of them: "means2d_low",
+    "means2d_high" …"""
+    call = _Call("project")
+    call.input(scene)
+    call.camera(camera)
+    path = call.temporary("npz")
+    call.add("o", path)
+    call.options(options)
+    arrays: Dict[str, numpy.ndarray] = {}
+    call.run(keeps=True, progress=progress, threads=threads, then=lambda: arrays.update(numpy.load(path)))
+    return arrays
+
+
+def judge_intermediates(scene: AnyScene, camera: AnyCamera, arrays: Dict[str, Any], *, progress: Any = None,
+                        threads: Optional[int] = None, **options: Options) -> Dict[str, Any]:
+    """Whether another renderer's intermediates are what its profile makes of the scene: gsplat's `meta`, as it is, or
+    any of its arrays by their names; with "render_colors" and "render_alphas" its picture, too. Arrays on a GPU are
+    moved. The answer has "verdict", "stage" (the first that is wrong), and "arrays"."""
+    call = _Call("judge")
+    call.input(scene)
+    call.camera(camera)
+    path = call.temporary("npz")
+    found = {name: as_numpy(array.cpu() if hasattr(array, "cpu") else array, name)
+             for name, array in arrays.items() if hasattr(array, "shape") and len(array.shape)}
+    numpy.savez(path, **found)  # type: ignore[arg-type]
+    call.add("intermediates", path)
     call.options(options)
     return call.ask(keeps=True, progress=progress, threads=threads)
 

@@ -502,6 +502,7 @@ def judge(
     gradients: Optional[PathLike] = None,
     weights: Optional[PathLike] = None,
     raw: Optional[bool] = None,
+    intermediates: Optional[PathLike] = None,
     size: Optional[Union[str, Sequence[int]]] = None,
     view: Optional[Union[str, float, Sequence[float]]] = None,
     azimuth: Optional[float] = None,
@@ -583,6 +584,370 @@ def judge(
     gradients: judge a derivative, in the place of a picture: .ply as conic gradient's, or .npz
     weights: of --gradients: W of L = sum W C, as conic gradient has it
     raw: of --gradients: they are by ln s and logit o
+    intermediates: judge means2d, conics, isect_ids … in the place of a picture, as conic project has them
+    size: the picture's width and height in pixels; cameras of a file are scaled to it [1024x1024, or the
+        file's]
+    camera: cameras, in place of --azimuth and those below it: a COLMAP folder, transforms.json, cameras.json,
+        .npz of viewmats and Ks, glTF, or conic's JSON; top: a map, seen from straight above, with the unit of
+        the points that a pixel is wide behind it, top:0.1, or else their typical distance, and the EPSG code
+        that a .tif notes, top:0.1:25832, or else the file's
+    view: which of the cameras of --camera: a number from 0, the name of an image with or without its folder and
+        ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
+        from a corner
+    azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
+    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat]
+    fov: field of view across the shorter side [40]
+    zoom: multiplies the focal length: 2 shows the middle, twice as large [1]
+    projection: perspective, orthographic (parallel), fisheye, panorama (all around) or cube (six sides, one
+        below the other) [perspective]
+    eye: the place from which the camera looks [where it sees all of the scene; a panorama's and a cube's: the
+        scene's middle]
+    up: what points up: x, y, z, -x … or X,Y,Z [the file's, or by its shape]
+    as_: what a mesh is drawn as: auto (triangles), points (splats of the vertices), mesh or hybrid (both)
+        [auto]
+    texture: the picture on a mesh's surface [as its materials say]
+    max_texture: what textures may take in memory together; one more is refused before it is decoded [4096]
+    allow_outside: a glTF may name buffers and pictures outside of its folder
+    crease: triangles without normals look smooth over edges up to this angle, 0 to 90 degrees; 0: every face is
+        flat; all: any triangles look smooth everywhere, by the mean normal of the faces about each vertex [30]
+    color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value
+        in the file by its name; auto: rgb, or else intensity [auto]
+    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain, viridis, magma, turbo or
+        classes; the values at its two ends behind it, or alone [what suits, from the 2nd to the 98th
+        percentile]
+    where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
+        [all]
+    error: draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a
+        .chy, also by how many steps colours may differ: black and white do by 100, and 2 are just visible [0:2]
+    budget: draw N splats and triangles at most, those whose error is the least [all]
+    cache: of --error and --budget, keep what is built of points and meshes in this folder, up to 4 GiB, and
+        take it from there the next time
+    only: of a .chy, draw every patch as triangles, or every one as surfels (splats) [as built]
+    method: how a splat becomes pixels, from rough to exact: point, disc, affine, conic, ray; auto: conic where
+        that is exact enough, else ray or, of large splats, laplace; patch: as part of a smooth surface through
+        the points, with patch:D by polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the
+        length H, as 2x [auto]
+    profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
+        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque
+        splats; inria-2023 and 2dgs-2024 with :ignore-center behind them take the picture's middle for the
+        camera's principal point, as these do [exact]
+    quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
+        --samples go first [good]
+    kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N
+        [gauss]
+    cutoff: at how many standard deviations from its centre a splat ends [1.5]
+    prefilter: the variance, in square pixels, of the blur that keeps small splats from flickering; 0: none [1;
+        0 of Gaussian scenes]
+    epsilon: splats so near to each other along the ray are blended as one surface: a length, also in spacings
+        (2x), or auto [auto]
+    passes: 3: blend the splats of a surface; 1: the nearest splat wins [3]
+    samples: average N x N samples in each pixel, which makes silhouettes soft [2; 1 with --profile, --repeat or
+        --deep]
+    cull: back: leave out what faces away; or none [none]
+    near: nothing nearer to the camera is drawn [1e-4 of the scene's diagonal]
+    shade: none (colours as they are), lambert (matt) or phong (with a highlight) [phong; none for maps of what
+        has colours]
+    light: a light: X,Y,Z, the direction towards it, in the scene; camera:X,Y,Z, likewise, but it moves with the
+        camera (right, up, towards you); head, at your eye; each with its colour :R,G,B behind it or without,
+        and a direction then with the radius of its disc, :2deg, for soft shadows with --accumulate; lamp:X,Y,Z,
+        a place, with :R,G,B of which a surface at distance 1 is lit, then :RADIUS of a ball, then :X,Y,Z where
+        to it shines, for a disc or, with :WxH, a rectangle, and :X,Y,Z where to its H goes [up in the scene];
+        studio, several that suit most scenes; none. Up to 8 of a direction, 8 lamps [studio]
+    sky: light from all around; of two colours, the first falls on what faces up, the second on what faces down
+        [the studio's]; or a picture of all directions, such as sky.exr or sky.pfm, which needs --ao
+    reflect: so much of each colour, 0 to 1, is the picture of --sky as a smooth surface mirrors it; nothing
+        hides it [0]
+    background: linear colour behind the scene, a name as white, or #rrggbb; two go from top to bottom; none:
+        transparent [dark greys in PNG and JPEG, else none]
+    exposure: stops, -100 to 100: each doubles the brightness; auto: as bright as leaves 1 pixel in 20 near
+        white [0]
+    planes: planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place
+        in the world); cluster of hybrids; T, medianZ, inverseZ, last, doubt of Gaussian scenes; ao and shadow,
+        what light arrives; cryptomatte, into .exr: mattes by which each input, or each patch of a hybrid, is
+        picked by its name in Nuke or Blender [rgba,Z]
+    k: how many neighbours a raw point's size and normal are estimated from, 6 to 64 [20]
+    columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
+    colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
+        ones, as conic's .ply has them: file, display, linear [file]
+    tile: the edge, in pixels, of the squares that a picture is drawn in: 8, 16, 32 or 64; changes no bit of it
+        [64]
+    device: what draws: cpu, opencl (the first device) or opencl:P.D (see conic devices), which :gather makes go
+        about it as on a GPU and :lanes as on a CPU; changes no bit of the picture; with :inexact behind it also
+        one whose rounding makes the picture another one [cpu]
+    plain: draw as the library does by default: of a mesh the vertices, framed by a sphere, with a headlight and
+        one sample
+    isa: the processor's instructions: auto, scalar, sse2, avx2, avx512, neon; changes no bit of the picture
+        [auto]
+    threads: how many threads compute; the results never depend on it [0: all]
+    """
+
+
+def project(
+    scene: AnyScene,
+    camera: AnyCamera,
+    *,
+    progress: Any = None,
+    threads: Optional[int] = None,
+    floats: Optional[Literal["own", "strict", "fast"]] = None,
+    size: Optional[Union[str, Sequence[int]]] = None,
+    view: Optional[Union[str, float, Sequence[float]]] = None,
+    azimuth: Optional[float] = None,
+    elevation: Optional[float] = None,
+    fov: Optional[float] = None,
+    zoom: Optional[float] = None,
+    projection: Optional[Literal["perspective", "fisheye", "orthographic", "panorama", "cube"]] = None,
+    eye: Optional[Union[str, float, Sequence[float]]] = None,
+    up: Optional[Union[str, float, Sequence[float]]] = None,
+    as_: Optional[Literal["auto", "points", "mesh", "hybrid"]] = None,
+    texture: Optional[PathLike] = None,
+    max_texture: Optional[int] = None,
+    allow_outside: Optional[bool] = None,
+    crease: Optional[Union[str, float, Sequence[float]]] = None,
+    color_by: Optional[PathLike] = None,
+    ramp: Optional[Union[str, float, Sequence[float]]] = None,
+    where: Optional[PathLike] = None,
+    error: Optional[float] = None,
+    budget: Optional[Union[int, str]] = None,
+    cache: Optional[PathLike] = None,
+    only: Optional[Literal["triangles", "surfels"]] = None,
+    method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
+    profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
+        "2dgs-2024", "2dgs-gsplat", "khr-2026", "surface"]] = None,
+    quality: Optional[Literal["draft", "good", "final"]] = None,
+    kernel: Optional[Union[str, float, Sequence[float]]] = None,
+    cutoff: Optional[float] = None,
+    prefilter: Optional[float] = None,
+    epsilon: Optional[Union[str, float, Sequence[float]]] = None,
+    passes: Optional[int] = None,
+    samples: Optional[int] = None,
+    cull: Optional[Literal["none", "back"]] = None,
+    near: Optional[Union[str, float, Sequence[float]]] = None,
+    shade: Optional[Literal["none", "lambert", "phong"]] = None,
+    light: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
+    sky: Optional[Union[str, float, Sequence[float]]] = None,
+    reflect: Optional[float] = None,
+    background: Optional[Union[str, float, Sequence[float]]] = None,
+    exposure: Optional[Union[str, float, Sequence[float]]] = None,
+    planes: Optional[Union[str, float, Sequence[float]]] = None,
+    k: Optional[int] = None,
+    columns: Optional[Union[str, float, Sequence[float]]] = None,
+    colors: Optional[Literal["file", "display", "linear"]] = None,
+    tile: Optional[int] = None,
+    device: Optional[Union[str, float, Sequence[float]]] = None,
+    plain: Optional[bool] = None,
+    isa: Optional[Literal["auto", "scalar", "sse2", "avx2", "avx512", "neon"]] = None,
+) -> Dict[str, numpy.ndarray]:
+    """What a profile makes of each Gaussian before it is composited, by gsplat's names: "radii", "means2d", "depths",
+    "conics", "opacities", "colors", "isect_ids", "flatten_ids" …, and what floats may make of them: "means2d_low",
+    "means2d_high" …
+
+    Options:
+
+    output: all arrays by gsplat's names, and their ranges: .npz; or .csv, without lists
+    floats: whose roundings the ranges are of: own, strict or fast (a GPU's) [fast]
+    size: the picture's width and height in pixels; cameras of a file are scaled to it [1024x1024, or the
+        file's]
+    camera: cameras, in place of --azimuth and those below it: a COLMAP folder, transforms.json, cameras.json,
+        .npz of viewmats and Ks, glTF, or conic's JSON; top: a map, seen from straight above, with the unit of
+        the points that a pixel is wide behind it, top:0.1, or else their typical distance, and the EPSG code
+        that a .tif notes, top:0.1:25832, or else the file's
+    view: which of the cameras of --camera: a number from 0, the name of an image with or without its folder and
+        ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
+        from a corner
+    azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
+    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat]
+    fov: field of view across the shorter side [40]
+    zoom: multiplies the focal length: 2 shows the middle, twice as large [1]
+    projection: perspective, orthographic (parallel), fisheye, panorama (all around) or cube (six sides, one
+        below the other) [perspective]
+    eye: the place from which the camera looks [where it sees all of the scene; a panorama's and a cube's: the
+        scene's middle]
+    up: what points up: x, y, z, -x … or X,Y,Z [the file's, or by its shape]
+    as_: what a mesh is drawn as: auto (triangles), points (splats of the vertices), mesh or hybrid (both)
+        [auto]
+    texture: the picture on a mesh's surface [as its materials say]
+    max_texture: what textures may take in memory together; one more is refused before it is decoded [4096]
+    allow_outside: a glTF may name buffers and pictures outside of its folder
+    crease: triangles without normals look smooth over edges up to this angle, 0 to 90 degrees; 0: every face is
+        flat; all: any triangles look smooth everywhere, by the mean normal of the faces about each vertex [30]
+    color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value
+        in the file by its name; auto: rgb, or else intensity [auto]
+    ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain, viridis, magma, turbo or
+        classes; the values at its two ends behind it, or alone [what suits, from the 2nd to the 98th
+        percentile]
+    where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
+        [all]
+    error: draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a
+        .chy, also by how many steps colours may differ: black and white do by 100, and 2 are just visible [0:2]
+    budget: draw N splats and triangles at most, those whose error is the least [all]
+    cache: of --error and --budget, keep what is built of points and meshes in this folder, up to 4 GiB, and
+        take it from there the next time
+    only: of a .chy, draw every patch as triangles, or every one as surfels (splats) [as built]
+    method: how a splat becomes pixels, from rough to exact: point, disc, affine, conic, ray; auto: conic where
+        that is exact enough, else ray or, of large splats, laplace; patch: as part of a smooth surface through
+        the points, with patch:D by polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the
+        length H, as 2x [auto]
+    profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
+        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque
+        splats; inria-2023 and 2dgs-2024 with :ignore-center behind them take the picture's middle for the
+        camera's principal point, as these do [exact]
+    quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
+        --samples go first [good]
+    kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N
+        [gauss]
+    cutoff: at how many standard deviations from its centre a splat ends [1.5]
+    prefilter: the variance, in square pixels, of the blur that keeps small splats from flickering; 0: none [1;
+        0 of Gaussian scenes]
+    epsilon: splats so near to each other along the ray are blended as one surface: a length, also in spacings
+        (2x), or auto [auto]
+    passes: 3: blend the splats of a surface; 1: the nearest splat wins [3]
+    samples: average N x N samples in each pixel, which makes silhouettes soft [2; 1 with --profile, --repeat or
+        --deep]
+    cull: back: leave out what faces away; or none [none]
+    near: nothing nearer to the camera is drawn [1e-4 of the scene's diagonal]
+    shade: none (colours as they are), lambert (matt) or phong (with a highlight) [phong; none for maps of what
+        has colours]
+    light: a light: X,Y,Z, the direction towards it, in the scene; camera:X,Y,Z, likewise, but it moves with the
+        camera (right, up, towards you); head, at your eye; each with its colour :R,G,B behind it or without,
+        and a direction then with the radius of its disc, :2deg, for soft shadows with --accumulate; lamp:X,Y,Z,
+        a place, with :R,G,B of which a surface at distance 1 is lit, then :RADIUS of a ball, then :X,Y,Z where
+        to it shines, for a disc or, with :WxH, a rectangle, and :X,Y,Z where to its H goes [up in the scene];
+        studio, several that suit most scenes; none. Up to 8 of a direction, 8 lamps [studio]
+    sky: light from all around; of two colours, the first falls on what faces up, the second on what faces down
+        [the studio's]; or a picture of all directions, such as sky.exr or sky.pfm, which needs --ao
+    reflect: so much of each colour, 0 to 1, is the picture of --sky as a smooth surface mirrors it; nothing
+        hides it [0]
+    background: linear colour behind the scene, a name as white, or #rrggbb; two go from top to bottom; none:
+        transparent [dark greys in PNG and JPEG, else none]
+    exposure: stops, -100 to 100: each doubles the brightness; auto: as bright as leaves 1 pixel in 20 near
+        white [0]
+    planes: planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place
+        in the world); cluster of hybrids; T, medianZ, inverseZ, last, doubt of Gaussian scenes; ao and shadow,
+        what light arrives; cryptomatte, into .exr: mattes by which each input, or each patch of a hybrid, is
+        picked by its name in Nuke or Blender [rgba,Z]
+    k: how many neighbours a raw point's size and normal are estimated from, 6 to 64 [20]
+    columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
+    colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
+        ones, as conic's .ply has them: file, display, linear [file]
+    tile: the edge, in pixels, of the squares that a picture is drawn in: 8, 16, 32 or 64; changes no bit of it
+        [64]
+    device: what draws: cpu, opencl (the first device) or opencl:P.D (see conic devices), which :gather makes go
+        about it as on a GPU and :lanes as on a CPU; changes no bit of the picture; with :inexact behind it also
+        one whose rounding makes the picture another one [cpu]
+    plain: draw as the library does by default: of a mesh the vertices, framed by a sphere, with a headlight and
+        one sample
+    isa: the processor's instructions: auto, scalar, sse2, avx2, avx512, neon; changes no bit of the picture
+        [auto]
+    threads: how many threads compute; the results never depend on it [0: all]
+    """
+
+
+def judge_intermediates(
+    scene: AnyScene,
+    camera: AnyCamera,
+    arrays: Dict[str, Any],
+    *,
+    progress: Any = None,
+    threads: Optional[int] = None,
+    picture: Optional[PathLike] = None,
+    floats: Optional[Literal["own", "strict", "fast"]] = None,
+    max_wrong: Optional[Union[int, str]] = None,
+    pixels: Optional[Union[int, str]] = None,
+    map: Optional[PathLike] = None,
+    report: Optional[PathLike] = None,
+    transfer: Optional[Literal["linear", "srgb"]] = None,
+    codes: Optional[Literal["either", "nearest", "down"]] = None,
+    clipped: Optional[bool] = None,
+    straight: Optional[bool] = None,
+    no_diagnosis: Optional[bool] = None,
+    allow_vague: Optional[bool] = None,
+    time: Optional[bool] = None,
+    suite: Optional[PathLike] = None,
+    pictures: Optional[PathLike] = None,
+    level: Optional[int] = None,
+    junit: Optional[PathLike] = None,
+    gradients: Optional[PathLike] = None,
+    weights: Optional[PathLike] = None,
+    raw: Optional[bool] = None,
+    intermediates: Optional[PathLike] = None,
+    size: Optional[Union[str, Sequence[int]]] = None,
+    view: Optional[Union[str, float, Sequence[float]]] = None,
+    azimuth: Optional[float] = None,
+    elevation: Optional[float] = None,
+    fov: Optional[float] = None,
+    zoom: Optional[float] = None,
+    projection: Optional[Literal["perspective", "fisheye", "orthographic", "panorama", "cube"]] = None,
+    eye: Optional[Union[str, float, Sequence[float]]] = None,
+    up: Optional[Union[str, float, Sequence[float]]] = None,
+    as_: Optional[Literal["auto", "points", "mesh", "hybrid"]] = None,
+    texture: Optional[PathLike] = None,
+    max_texture: Optional[int] = None,
+    allow_outside: Optional[bool] = None,
+    crease: Optional[Union[str, float, Sequence[float]]] = None,
+    color_by: Optional[PathLike] = None,
+    ramp: Optional[Union[str, float, Sequence[float]]] = None,
+    where: Optional[PathLike] = None,
+    error: Optional[float] = None,
+    budget: Optional[Union[int, str]] = None,
+    cache: Optional[PathLike] = None,
+    only: Optional[Literal["triangles", "surfels"]] = None,
+    method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
+    profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
+        "2dgs-2024", "2dgs-gsplat", "khr-2026", "surface"]] = None,
+    quality: Optional[Literal["draft", "good", "final"]] = None,
+    kernel: Optional[Union[str, float, Sequence[float]]] = None,
+    cutoff: Optional[float] = None,
+    prefilter: Optional[float] = None,
+    epsilon: Optional[Union[str, float, Sequence[float]]] = None,
+    passes: Optional[int] = None,
+    samples: Optional[int] = None,
+    cull: Optional[Literal["none", "back"]] = None,
+    near: Optional[Union[str, float, Sequence[float]]] = None,
+    shade: Optional[Literal["none", "lambert", "phong"]] = None,
+    light: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
+    sky: Optional[Union[str, float, Sequence[float]]] = None,
+    reflect: Optional[float] = None,
+    background: Optional[Union[str, float, Sequence[float]]] = None,
+    exposure: Optional[Union[str, float, Sequence[float]]] = None,
+    planes: Optional[Union[str, float, Sequence[float]]] = None,
+    k: Optional[int] = None,
+    columns: Optional[Union[str, float, Sequence[float]]] = None,
+    colors: Optional[Literal["file", "display", "linear"]] = None,
+    tile: Optional[int] = None,
+    device: Optional[Union[str, float, Sequence[float]]] = None,
+    plain: Optional[bool] = None,
+    isa: Optional[Literal["auto", "scalar", "sse2", "avx2", "avx512", "neon"]] = None,
+) -> Dict[str, Any]:
+    """Whether another renderer's intermediates are what its profile makes of the scene: gsplat's `meta`, as it is, or
+    any of its arrays by their names; with "render_colors" and "render_alphas" its picture, too. Arrays on a GPU are
+    moved. The answer has "verdict", "stage" (the first that is wrong), and "arrays".
+
+    Options:
+
+    picture: what is judged: EXR, PFM or NPY (with planes beside it, P.Z.npy …), NPZ, or PNG
+    floats: of what drew it: own (conic's), strict (all in float, in any order), or fast (and a GPU's fast
+        exponential) [fast]
+    max_wrong: so many pixels may be wrong [0]
+    pixels: judge this many pixels, spread evenly; always the same ones [all]
+    map: the class of every pixel in false colours, with a legend
+    report: a page with all that was found, pictures and all
+    transfer: codes of 8 or 16 bits: linear (code / 255) or srgb (decoded) [linear of Gaussian scenes, else
+        srgb]
+    codes: codes were rounded to the nearest, down, or either [either]
+    clipped: colours of 0 and 1 stand for what is beyond, in floats, too
+    straight: colours are not multiplied by alpha; of a PNG they never are
+    no_diagnosis: don't look for the mistake that explains wrong pixels, which may take longer than judging them
+    allow_vague: a picture may be right although more than 1 % of its pixels may be anything within more than
+        1/255
+    time: print what each stage took
+    suite: judge what conic conformance wrote, in the place of a scene
+    pictures: of a suite: where CASE.exr, .pfm, .npy, .npz or .png are, planes beside them
+    level: of a suite: only cases up to this level [all]
+    junit: of a suite: the cases as JUnit's XML, as CI systems take it
+    gradients: judge a derivative, in the place of a picture: .ply as conic gradient's, or .npz
+    weights: of --gradients: W of L = sum W C, as conic gradient has it
+    raw: of --gradients: they are by ln s and logit o
+    intermediates: judge means2d, conics, isect_ids … in the place of a picture, as conic project has them
     size: the picture's width and height in pixels; cameras of a file are scaled to it [1024x1024, or the
         file's]
     camera: cameras, in place of --azimuth and those below it: a COLMAP folder, transforms.json, cameras.json,

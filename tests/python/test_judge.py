@@ -7,7 +7,7 @@ import unittest
 import numpy
 
 import conic
-from conic.testing import PictureMismatch, assert_matches
+from conic.testing import PictureMismatch, assert_intermediates, assert_matches
 
 PROFILE = "gsplat-1.6"
 
@@ -53,6 +53,60 @@ class Judge(unittest.TestCase):
             for path in caught.exception.files:
                 self.assertIn(path, str(caught.exception))
                 self.assertGreater(os.path.getsize(path), 100)
+
+    def test_intermediates(self):
+        made = conic.project(self.scene, self.camera, profile=PROFILE)
+        given = {name: made[name] for name in ("radii", "means2d", "conics", "depths", "opacities", "colors",
+                                               "tiles_per_gauss", "isect_ids", "flatten_ids", "isect_offsets")}
+        given = {name: array.astype(numpy.float32) if array.dtype == float else array for name, array in given.items()}
+        colors, alphas = self.drawn["rgba"][..., :3], self.drawn["rgba"][..., 3:]
+
+        def judged(**changed):
+            return assert_intermediates({**given, **changed}, self.scene, self.camera, profile=PROFILE,
+                                        render_colors=colors, render_alphas=alphas)
+
+        said = judged()
+        self.assertEqual([array["judged"] for array in said["arrays"]],
+                         [120] * 4 + [len(made["isect_ids"])] * 2 + [120, 6, 120, 120, 1200, 1200])
+        judged(**{name: given[name][None] for name in ("means2d", "radii", "opacities")}, width=40, gaussian_ids=None)
+        shown = numpy.nonzero(made["radii"][:, 0] > 0)[0]
+        row = numpy.full(120, -1)
+        row[shown] = numpy.arange(len(shown))
+        packed = {name: array[shown] for name, array in given.items() if len(array) == 120}
+        packed.update(gaussian_ids=shown, flatten_ids=row[made["flatten_ids"]])
+        judged(**packed)
+
+        largest = made["radii"].max(1).argmax()
+        swapped = numpy.arange(len(made["isect_ids"]))
+        swapped[[0, 1]] = [1, 0]
+        nothing = numpy.where(numpy.arange(120)[:, None] == largest, 0, made["radii"])
+        near = made["depths"] * (1 + 1e-4)
+        for stage, name, changed in (
+                ("projection", "means2d", {"means2d": given["means2d"] + 0.5}),
+                ("projection", "conics", {"conics": given["conics"] * [1, 0.5, 1]}),
+                ("projection", "radii", {"radii": made["radii"] + 1}),
+                ("projection", "radii", {"radii": nothing}),
+                ("projection", "depths", {"depths": near}),
+                ("projection", "gaussian_ids", {name: array[:-1] if name != "flatten_ids" and len(array) == len(shown)
+                                                else array for name, array in packed.items()}),
+                ("sort", "isect_ids", {name: given[name][swapped] for name in ("isect_ids", "flatten_ids")}),
+                ("sort", "isect_ids", {name: given[name][made["isect_ids"] >> 32 < 4]
+                                       for name in ("isect_ids", "flatten_ids")}),
+                ("sort", "isect_ids", {"isect_ids": given["isect_ids"] & ~0xffff}),
+                ("sort", "tiles_per_gauss", {"tiles_per_gauss": made["tiles_per_gauss"] + 1}),
+                ("sort", "isect_offsets", {"isect_offsets": made["isect_offsets"] + 1}),
+                ("alpha", "opacities", {"opacities": given["opacities"] * 0.99}),
+                ("color", "colors", {"colors": given["colors"][:, ::-1]}),
+                ("blending", "render_colors", {"render_colors": colors})):
+            if stage == "blending":
+                colors = colors * 0.99
+            with self.assertRaises(PictureMismatch) as caught:
+                judged(**changed)
+            said = caught.exception.verdict
+            first = [array["name"] for array in said["arrays"] if array["wrong"]][0]
+            self.assertEqual((said["stage"], first), (stage, name), said)
+        with self.assertRaisesRegex(conic.InputError, "one camera at a time"):
+            judged(means2d=numpy.zeros((2, 120, 2)))
 
     def test_splats(self):
         scene = conic.make("sphere", n=500).splats()
