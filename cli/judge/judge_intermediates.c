@@ -42,13 +42,13 @@ static void write_intermediates(cli_json *json, const void *cookie) {
   cli_json_text(json, "profile", conic_gaussian_profile_name(job->scene.shot.gaussians.profile));
   cli_json_text(json, "floats", cli_float_words[job->floats]);
   if (first)
-    cli_json_text(json, "stage", conic_stage_name(first->stage));
+    cli_json_text(json, "stage", conic_gaussian_stage_name(first->stage));
   cli_json_array(json, "arrays");
   for (int k = 0; k < job->verdict.n_arrays; k++) {
     const conic_judged_array *a = &job->verdict.arrays[k];
     cli_json_object(json, NULL);
     cli_json_text(json, "name", a->name);
-    cli_json_text(json, "stage", conic_stage_name(a->stage));
+    cli_json_text(json, "stage", conic_gaussian_stage_name(a->stage));
     cli_json_counts(json, NULL, {"judged", a->judged}, {"wrong", a->wrong});
     if (a->wrong)
       write_worst_number(json, a);
@@ -62,11 +62,11 @@ static void print_intermediates(const intermediates_job *job) {
   const conic_judged_array *first = first_wrong(job);
   for (int k = 0; k < job->verdict.n_arrays; k++) {
     const conic_judged_array *a = &job->verdict.arrays[k];
-    printf("%-10s %-15s %zu of %zu wrong\n", conic_stage_name(a->stage), a->name, a->wrong, a->judged);
+    printf("%-10s %-15s %zu of %zu wrong\n", conic_gaussian_stage_name(a->stage), a->name, a->wrong, a->judged);
   }
   if (first) {
-    printf("the first stage that is wrong is %s: %s[%zu][%d]", conic_stage_name(first->stage), first->name, first->row,
-           first->column);
+    printf("the first stage that is wrong is %s: %s[%zu][%d]", conic_gaussian_stage_name(first->stage), first->name,
+           first->row, first->column);
     if (first->gaussian != CONIC_NO_ID)
       printf(" of Gaussian %u", first->gaussian);
     printf(" is %.9g", first->found);

@@ -59,25 +59,25 @@ CONIC_API conic_status conic_gaussian_intermediates_write(conic_context *context
                                                           const conic_gaussian_intermediates *found);
 
 /* The steps of a renderer, in their order. */
-typedef enum conic_stage {
-  CONIC_STAGE_PROJECTION = 0,
-  CONIC_STAGE_SORT = 1,
-  CONIC_STAGE_ALPHA = 2,
-  CONIC_STAGE_COLOR = 3,
-  CONIC_STAGE_BLENDING = 4
-} conic_stage;
+typedef enum conic_gaussian_stage {
+  CONIC_GAUSSIAN_STAGE_PROJECTION = 0,
+  CONIC_GAUSSIAN_STAGE_SORT = 1,
+  CONIC_GAUSSIAN_STAGE_ALPHA = 2,
+  CONIC_GAUSSIAN_STAGE_COLOR = 3,
+  CONIC_GAUSSIAN_STAGE_BLENDING = 4
+} conic_gaussian_stage;
 
-#define CONIC_N_STAGES 5
+#define CONIC_N_GAUSSIAN_STAGES 5
 
 /* "projection", "sort" …; null for a number that is none. */
-CONIC_API const char *conic_stage_name(conic_stage stage);
+CONIC_API const char *conic_gaussian_stage_name(conic_gaussian_stage stage);
 
 #define CONIC_MAX_JUDGED_ARRAYS 16
 
 /* One array of theirs, and its number that is farthest outside of its range. */
 typedef struct conic_judged_array {
   const char *name;
-  conic_stage stage;
+  conic_gaussian_stage stage;
   size_t judged, wrong; /* Gaussians; entries of lists; pixels */
   size_t row;           /* the Gaussian, the entry or the pixel y · width + x */
   int column;

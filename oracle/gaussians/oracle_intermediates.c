@@ -3,7 +3,8 @@
 
 CONIC_DEFINE_NAMES(conic_intermediate_name, conic_intermediate, CONIC_N_INTERMEDIATES, "radii", "means2d", "depths",
                    "covars2d", "conics", "tile_boxes", "tiles_per_gauss", "opacities", "colors", "transmittances")
-CONIC_DEFINE_NAMES(conic_stage_name, conic_stage, CONIC_N_STAGES, "projection", "sort", "alpha", "color", "blending")
+CONIC_DEFINE_NAMES(conic_gaussian_stage_name, conic_gaussian_stage, CONIC_N_GAUSSIAN_STAGES, "projection", "sort",
+                   "alpha", "color", "blending")
 
 enum { A_RUN = 256 };
 
@@ -12,13 +13,13 @@ typedef struct list_entry {
   uint32_t gaussian;
 } list_entry;
 
-typedef struct project_job {
+typedef struct projecting {
   oracle_entry *e;
   conic_gaussian_intermediates *to;
   int is_by_ellipse; /* its tiles are those that its ellipse meets, not its box */
   size_t *begin;     /* of each Gaussian's entries, count + 1 of them */
   list_entry *entries;
-} project_job;
+} projecting;
 
 static void put_range(const conic_intermediate_array *a, size_t i, int column, oracle_range r) {
   const size_t at = i * (size_t)a->n_columns + (size_t)column;
@@ -28,7 +29,7 @@ static void put_range(const conic_intermediate_array *a, size_t i, int column, o
 }
 
 /* How many tiles list it; its entries, if there is room for them. */
-static size_t list_tiles(const project_job *j, const oracle_projected *p, list_entry *entries) {
+static size_t list_tiles(const projecting *j, const oracle_projected *p, list_entry *entries) {
   const oracle_doubting *d = &j->e->bounding.doubting;
   const uint32_t depth = conic_bits_of_float((float)p->g.z.v);
   size_t n = 0;
@@ -42,7 +43,7 @@ static size_t list_tiles(const project_job *j, const oracle_projected *p, list_e
   return n;
 }
 
-static oracle_range count_tiles(const project_job *j, const oracle_projected *p) {
+static oracle_range count_tiles(const projecting *j, const oracle_projected *p) {
   size_t n_least = 0, n_most = 0;
   for (int y = (int)p->first[1].low; y < (int)p->behind[1].high; y++)
     for (int x = (int)p->first[0].low; x < (int)p->behind[0].high; x++) {
@@ -53,7 +54,7 @@ static oracle_range count_tiles(const project_job *j, const oracle_projected *p)
 }
 
 static void project_run(void *data, size_t i_run) {
-  const project_job *j = data;
+  const projecting *j = data;
   for (size_t i = i_run * A_RUN; i < (i_run + 1) * A_RUN && i < j->to->count; i++) {
     oracle_projected p;
     conic_oracle_project(&j->e->bounding.doubting, i, &p);
@@ -71,7 +72,7 @@ static void project_run(void *data, size_t i_run) {
 /* --- lists --- */
 
 static void list_run(void *data, size_t i_run) {
-  const project_job *j = data;
+  const projecting *j = data;
   for (size_t i = i_run * A_RUN; i < (i_run + 1) * A_RUN && i < j->to->count; i++) {
     oracle_projected p;
     if (j->begin[i] == j->begin[i + 1])
@@ -86,11 +87,11 @@ static int compare_entries(const void *a, const void *b) {
   return x->id != y->id ? (x->id > y->id ? 1 : -1) : (x->gaussian > y->gaussian) - (x->gaussian < y->gaussian);
 }
 
-static size_t n_runs_of(const project_job *j) {
+static size_t n_runs_of(const projecting *j) {
   return (j->to->count + A_RUN - 1) / A_RUN;
 }
 
-static conic_status make_lists(project_job *j) {
+static conic_status make_lists(projecting *j) {
   conic_context *context = j->e->bounding.context;
   conic_gaussian_intermediates *to = j->to;
   const size_t n_tiles = (size_t)to->tile_width * (size_t)to->tile_height;
@@ -143,7 +144,7 @@ static oracle_range find_transmittance(const oracle_meeting *meetings, size_t n,
 }
 
 static void note_transmittances(void *data, size_t pixel, const oracle_meeting *meetings, size_t n, int i_thread) {
-  const project_job *j = data;
+  const projecting *j = data;
   const double x = (double)(pixel % (size_t)j->e->bounding.width) + 0.5;
   const double y = (double)(pixel / (size_t)j->e->bounding.width) + 0.5;
   (void)i_thread;
@@ -158,7 +159,7 @@ static void forget_bound(void *data, size_t i, size_t pixel, const conic_gaussia
 }
 
 /* At the pixels that hold a mean. */
-static conic_status find_transmittances(project_job *j) {
+static conic_status find_transmittances(projecting *j) {
   oracle_bound_request *b = &j->e->bounding;
   const double *place = j->to->arrays[CONIC_INTERMEDIATE_MEANS2D].value;
   const size_t whole = b->n_pixels;
@@ -210,7 +211,7 @@ conic_status conic_gaussian_intermediates_find(conic_context *context, const con
   conic_status status = conic_oracle_enter(context, gaussians, camera, options, model ? model : &fast, 1, &e);
   if (status != CONIC_OK)
     return status;
-  project_job j = {.e = &e, .to = found};
+  projecting j = {.e = &e, .to = found};
   j.is_by_ellipse = e.options.profile == CONIC_PROFILE_GSPLAT_1_6 || e.options.profile == CONIC_PROFILE_GSPLAT_1_6_AA;
   status = make_room(context, &e, gaussians->count, found);
   if (status == CONIC_OK)

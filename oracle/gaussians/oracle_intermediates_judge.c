@@ -18,23 +18,23 @@ typedef enum given_name {
 
 static const struct {
   const char *names[3];
-  conic_stage stage;
+  conic_gaussian_stage stage;
 } about[N_GIVEN] = {
-    [CONIC_INTERMEDIATE_RADII] = {{"radii"}, CONIC_STAGE_PROJECTION},
-    [CONIC_INTERMEDIATE_MEANS2D] = {{"means2d"}, CONIC_STAGE_PROJECTION},
-    [CONIC_INTERMEDIATE_DEPTHS] = {{"depths"}, CONIC_STAGE_PROJECTION},
-    [CONIC_INTERMEDIATE_COVARS2D] = {{"covars2d"}, CONIC_STAGE_PROJECTION},
-    [CONIC_INTERMEDIATE_CONICS] = {{"conics"}, CONIC_STAGE_PROJECTION},
-    [CONIC_INTERMEDIATE_TILE_BOXES] = {{"tile_boxes"}, CONIC_STAGE_SORT},
-    [CONIC_INTERMEDIATE_TILES_PER_GAUSS] = {{"tiles_per_gauss"}, CONIC_STAGE_SORT},
-    [CONIC_INTERMEDIATE_OPACITIES] = {{"opacities"}, CONIC_STAGE_ALPHA},
-    [CONIC_INTERMEDIATE_COLORS] = {{"colors"}, CONIC_STAGE_COLOR},
-    [GIVEN_ISECT_IDS] = {{"isect_ids"}, CONIC_STAGE_SORT},
-    [GIVEN_FLATTEN_IDS] = {{"flatten_ids"}, CONIC_STAGE_SORT},
-    [GIVEN_ISECT_OFFSETS] = {{"isect_offsets"}, CONIC_STAGE_SORT},
-    [GIVEN_GAUSSIAN_IDS] = {{"gaussian_ids"}, CONIC_STAGE_PROJECTION},
-    [GIVEN_COLORS] = {{"render_colors", "colors"}, CONIC_STAGE_BLENDING},
-    [GIVEN_ALPHAS] = {{"render_alphas", "alphas"}, CONIC_STAGE_BLENDING},
+    [CONIC_INTERMEDIATE_RADII] = {{"radii"}, CONIC_GAUSSIAN_STAGE_PROJECTION},
+    [CONIC_INTERMEDIATE_MEANS2D] = {{"means2d"}, CONIC_GAUSSIAN_STAGE_PROJECTION},
+    [CONIC_INTERMEDIATE_DEPTHS] = {{"depths"}, CONIC_GAUSSIAN_STAGE_PROJECTION},
+    [CONIC_INTERMEDIATE_COVARS2D] = {{"covars2d"}, CONIC_GAUSSIAN_STAGE_PROJECTION},
+    [CONIC_INTERMEDIATE_CONICS] = {{"conics"}, CONIC_GAUSSIAN_STAGE_PROJECTION},
+    [CONIC_INTERMEDIATE_TILE_BOXES] = {{"tile_boxes"}, CONIC_GAUSSIAN_STAGE_SORT},
+    [CONIC_INTERMEDIATE_TILES_PER_GAUSS] = {{"tiles_per_gauss"}, CONIC_GAUSSIAN_STAGE_SORT},
+    [CONIC_INTERMEDIATE_OPACITIES] = {{"opacities"}, CONIC_GAUSSIAN_STAGE_ALPHA},
+    [CONIC_INTERMEDIATE_COLORS] = {{"colors"}, CONIC_GAUSSIAN_STAGE_COLOR},
+    [GIVEN_ISECT_IDS] = {{"isect_ids"}, CONIC_GAUSSIAN_STAGE_SORT},
+    [GIVEN_FLATTEN_IDS] = {{"flatten_ids"}, CONIC_GAUSSIAN_STAGE_SORT},
+    [GIVEN_ISECT_OFFSETS] = {{"isect_offsets"}, CONIC_GAUSSIAN_STAGE_SORT},
+    [GIVEN_GAUSSIAN_IDS] = {{"gaussian_ids"}, CONIC_GAUSSIAN_STAGE_PROJECTION},
+    [GIVEN_COLORS] = {{"render_colors", "colors"}, CONIC_GAUSSIAN_STAGE_BLENDING},
+    [GIVEN_ALPHAS] = {{"render_alphas", "alphas"}, CONIC_GAUSSIAN_STAGE_BLENDING},
 };
 
 /* The order in which they are judged and told. */
@@ -61,7 +61,7 @@ typedef struct given_array {
   size_t n; /* numbers */
 } given_array;
 
-typedef struct judge_job {
+typedef struct intermediates_judging {
   oracle_entry e;
   conic_context *context;
   const char *path;
@@ -73,15 +73,15 @@ typedef struct judge_job {
   size_t *begin;    /* of each row's entries, in `places` */
   uint32_t *places; /* of entries */
   char *is_listed;  /* tiles of one Gaussian; Gaussians that a row is of */
-} judge_job;
+} intermediates_judging;
 
-static double given_number(const judge_job *j, int name, size_t i) {
+static double given_number(const intermediates_judging *j, int name, size_t i) {
   return conic_numpy_array_at(&j->given[name].a, i);
 }
 
 /* --- what is there --- */
 
-static int is_of_pixels(const judge_job *j, const conic_numpy_array *a, size_t least_channels) {
+static int is_of_pixels(const intermediates_judging *j, const conic_numpy_array *a, size_t least_channels) {
   const size_t *shape = a->shape + a->n_axes, width = (size_t)j->e.bounding.width;
   if (a->n_axes >= 2 && least_channels == 1 && shape[-1] == width)
     return shape[-2] == (size_t)j->e.bounding.height;
@@ -89,7 +89,7 @@ static int is_of_pixels(const judge_job *j, const conic_numpy_array *a, size_t l
          shape[-3] == (size_t)j->e.bounding.height;
 }
 
-static conic_status open_given(judge_job *j, const conic_zip *zip, int name) {
+static conic_status open_given(intermediates_judging *j, const conic_zip *zip, int name) {
   given_array *given = &j->given[name];
   char file[40];
   for (int k = 0; k < 3 && about[name].names[k] && !given->name; k++) {
@@ -122,7 +122,7 @@ static conic_status open_given(judge_job *j, const conic_zip *zip, int name) {
 }
 
 /* Numbers of a row that it has to have; 0: it is not judged by rows. */
-static size_t columns_given(const judge_job *j, int name) {
+static size_t columns_given(const intermediates_judging *j, int name) {
   if (name >= CONIC_INTERMEDIATE_TRANSMITTANCES || !j->given[name].name)
     return 0;
   if (name == CONIC_INTERMEDIATE_RADII && j->given[name].n == j->n_rows && conic_oracle_has_radii(j->e.view.rules))
@@ -130,7 +130,7 @@ static size_t columns_given(const judge_job *j, int name) {
   return (size_t)conic_oracle_intermediate_columns(j->e.view.rules, (conic_intermediate)name);
 }
 
-static conic_status check_rows(judge_job *j) {
+static conic_status check_rows(intermediates_judging *j) {
   const int has_lists = j->given[GIVEN_ISECT_IDS].name || j->given[GIVEN_FLATTEN_IDS].name;
   int n_there = j->given[GIVEN_COLORS].name || j->given[GIVEN_ALPHAS].name;
   j->n_rows = j->given[GIVEN_GAUSSIAN_IDS].name ? j->given[GIVEN_GAUSSIAN_IDS].n : j->count;
@@ -158,7 +158,7 @@ static conic_status check_rows(judge_job *j) {
 
 /* --- findings --- */
 
-static void note_wrong(judge_job *j, int name, double severity, conic_judged_array found) {
+static void note_wrong(intermediates_judging *j, int name, double severity, conic_judged_array found) {
   conic_judged_array *to = &j->verdicts[name];
   to->wrong++;
   if (to->wrong > 1 && !(severity > j->severity[name]))
@@ -177,7 +177,7 @@ static double outside_of(oracle_range r, double found) {
   return out > 0.0 ? out / (r.high - r.low + 1e-7 * fabs(r.v) + 1e-30) : 0.0;
 }
 
-static void judge_row_of(judge_job *j, int name, size_t row, const oracle_projected *p) {
+static void judge_row_of(intermediates_judging *j, int name, size_t row, const oracle_projected *p) {
   const size_t n_columns = columns_given(j, name);
   conic_judged_array worst = {.row = row, .gaussian = p->g.index};
   double severity = 0.0;
@@ -201,19 +201,19 @@ static void judge_row_of(judge_job *j, int name, size_t row, const oracle_projec
 
 /* --- lists --- */
 
-static void note_entry(judge_job *j, int name, size_t k, uint32_t gaussian, const char *what, double found, double low,
-                       double high) {
+static void note_entry(intermediates_judging *j, int name, size_t k, uint32_t gaussian, const char *what, double found,
+                       double low, double high) {
   note_wrong(j, name, 1.0,
              (conic_judged_array){
                  .row = k, .gaussian = gaussian, .found = found, .value = low, .low = low, .high = high, .what = what});
 }
 
-static uint64_t id_of(const judge_job *j, size_t k) {
+static uint64_t id_of(const intermediates_judging *j, size_t k) {
   return (uint64_t)(int64_t)given_number(j, GIVEN_ISECT_IDS, k);
 }
 
 /* Whether the entries are in order; and sorts them by rows. */
-static conic_status take_entries(judge_job *j) {
+static conic_status take_entries(intermediates_judging *j) {
   const size_t n_tiles = (size_t)j->tile_width * (size_t)j->tile_height;
   conic_status status =
       conic_memory_allocate_these(j->context, CONIC_ZEROED(j->begin, j->n_rows + 2), CONIC_ROOM(j->places, j->n_isects),
@@ -249,7 +249,7 @@ static conic_status take_entries(judge_job *j) {
 }
 
 /* The tiles that list the row, and those that have to and do not. */
-static void judge_tiles_of(judge_job *j, size_t row, const oracle_projected *p) {
+static void judge_tiles_of(intermediates_judging *j, size_t row, const oracle_projected *p) {
   const int across = j->tile_width;
   for (size_t i = j->begin[row]; i < j->begin[row + 1]; i++) {
     const size_t k = j->places[i];
@@ -278,7 +278,7 @@ static void judge_tiles_of(judge_job *j, size_t row, const oracle_projected *p) 
   }
 }
 
-static void judge_count_of(judge_job *j, size_t row, const oracle_projected *p, int is_left_out) {
+static void judge_count_of(intermediates_judging *j, size_t row, const oracle_projected *p, int is_left_out) {
   oracle_range r = {0.0, 0.0, 0.0};
   if (!j->given[CONIC_INTERMEDIATE_TILES_PER_GAUSS].name || !j->tile_width)
     return;
@@ -297,7 +297,7 @@ static void judge_count_of(judge_job *j, size_t row, const oracle_projected *p, 
                j->n_isects ? "it is not the number of the Gaussian's entries" : NULL, found, r.low, r.high);
 }
 
-static void judge_offsets(judge_job *j) {
+static void judge_offsets(intermediates_judging *j) {
   const given_array *given = &j->given[GIVEN_ISECT_OFFSETS];
   const size_t n_tiles = (size_t)j->tile_width * (size_t)j->tile_height;
   if (!given->name || !j->n_isects)
@@ -318,7 +318,7 @@ static void judge_offsets(judge_job *j) {
 /* --- rows --- */
 
 /* Whether theirs is left out: 1, 0, or -1 where that is not told. */
-static int is_left_out_there(const judge_job *j, size_t row) {
+static int is_left_out_there(const intermediates_judging *j, size_t row) {
   const size_t n_columns = columns_given(j, CONIC_INTERMEDIATE_RADII);
   int is_left_out = 0;
   for (size_t k = 0; k < n_columns; k++)
@@ -326,11 +326,12 @@ static int is_left_out_there(const judge_job *j, size_t row) {
   return n_columns || j->given[GIVEN_GAUSSIAN_IDS].name ? is_left_out : -1;
 }
 
-static void note_presence(judge_job *j, int name, size_t row, uint32_t gaussian, const char *what, double found) {
+static void note_presence(intermediates_judging *j, int name, size_t row, uint32_t gaussian, const char *what,
+                          double found) {
   note_wrong(j, name, 1e30, (conic_judged_array){.row = row, .gaussian = gaussian, .what = what, .found = found});
 }
 
-static conic_status judge_rows(judge_job *j) {
+static conic_status judge_rows(intermediates_judging *j) {
   conic_status status = CONIC_OK;
   for (size_t row = 0; row < j->n_rows && status == CONIC_OK; row++) {
     const int is_packed = j->given[GIVEN_GAUSSIAN_IDS].name != NULL, is_left_out = is_left_out_there(j, row);
@@ -356,7 +357,7 @@ static conic_status judge_rows(judge_job *j) {
 }
 
 /* Those that no row is of. */
-static conic_status judge_missing(judge_job *j) {
+static conic_status judge_missing(intermediates_judging *j) {
   if (!j->given[GIVEN_GAUSSIAN_IDS].name)
     return CONIC_OK;
   char *is_there = conic_memory_allocate_zeroed(j->context, j->count, 1);
@@ -379,7 +380,7 @@ static conic_status judge_missing(judge_job *j) {
 
 /* --- the picture --- */
 
-static void take_picture(const judge_job *j, conic_image *image) {
+static void take_picture(const intermediates_judging *j, conic_image *image) {
   const given_array *colors = &j->given[GIVEN_COLORS], *alphas = &j->given[GIVEN_ALPHAS];
   const size_t n_pixels = (size_t)image->width * (size_t)image->height;
   float *rgba = image->planes[CONIC_PLANE_RGBA];
@@ -392,7 +393,8 @@ static void take_picture(const judge_job *j, conic_image *image) {
   image->lacks_alpha = alphas->name == NULL;
 }
 
-static void take_faults(judge_job *j, const uint32_t *faults, size_t n_pixels, const conic_gaussian_verdict *v) {
+static void take_faults(intermediates_judging *j, const uint32_t *faults, size_t n_pixels,
+                        const conic_gaussian_verdict *v) {
   for (int name = GIVEN_COLORS; name <= GIVEN_ALPHAS; name++) {
     const uint32_t bits = (name == GIVEN_COLORS ? 7u : 8u) << CONIC_MAX_PLANES;
     j->verdicts[name].judged = j->given[name].name ? n_pixels : 0;
@@ -413,7 +415,8 @@ static void take_faults(judge_job *j, const uint32_t *faults, size_t n_pixels, c
   }
 }
 
-static conic_status judge_picture(judge_job *j, const conic_gaussians *gaussians, const conic_camera *camera) {
+static conic_status judge_picture(intermediates_judging *j, const conic_gaussians *gaussians,
+                                  const conic_camera *camera) {
   const size_t n_pixels = (size_t)camera->width * (size_t)camera->height;
   conic_gaussian_judging judging;
   conic_gaussian_verdict verdict;
@@ -439,7 +442,7 @@ static conic_status judge_picture(judge_job *j, const conic_gaussians *gaussians
 
 /* --- all --- */
 
-static conic_status read_given(judge_job *j) {
+static conic_status read_given(intermediates_judging *j) {
   conic_mapping file;
   conic_zip zip;
   conic_status status = conic_mapping_open(j->context, j->path, &file);
@@ -452,7 +455,7 @@ static conic_status read_given(judge_job *j) {
   return status == CONIC_OK ? check_rows(j) : status;
 }
 
-static void tell_verdict(const judge_job *j, conic_intermediates_verdict *verdict) {
+static void tell_verdict(const intermediates_judging *j, conic_intermediates_verdict *verdict) {
   verdict->first_wrong = -1;
   for (int k = 0; k < N_GIVEN; k++) {
     const conic_judged_array *found = &j->verdicts[in_order[k]];
@@ -475,7 +478,7 @@ conic_status conic_gaussian_intermediates_judge(conic_context *context, const co
   conic_float_model fast;
   conic_float_model_init(&fast, CONIC_FLOATS_FAST);
   memset(verdict, 0, sizeof *verdict);
-  judge_job *j = conic_memory_allocate_zeroed(context, 1, sizeof *j);
+  intermediates_judging *j = conic_memory_allocate_zeroed(context, 1, sizeof *j);
   if (!j)
     return CONIC_ERROR_MEMORY;
   conic_status status = conic_oracle_enter(context, gaussians, camera, options, model ? model : &fast, 1, &j->e);
