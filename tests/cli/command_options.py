@@ -49,7 +49,9 @@ CASES = {
     "judge": {"--picture": "other.exr", "--floats": "own", "--max-wrong": "9", "--pixels": "50", "--map": "map.png",
               "--report": "r.html", "--transfer": "linear", "--codes": "down", "--clipped": None, "--straight": None,
               "--no-diagnosis": None, "--allow-vague": None, "--time": None, "--suite": "suite", "--pictures": "suite/expected", "--level": "1",
-              "--junit": "j.xml", "--gradients": "g.ply", "--weights": "picture.exr", "--raw": None},
+              "--junit": "j.xml", "--gradients": "g.ply", "--weights": "picture.exr", "--raw": None,
+              "--intermediates": "i.npz"},
+    "project": {"-o": "more.npz", "--floats": "strict"},
     "explain": {"--pixel": "3,4", "--splat": "3", "--dump-projection": "d.csv", "--sample": "1", "--aperture": "0.2",
                 "--focus": "1", "--shutter": "0:0.5", "--motion": "motion.json", "--turntable": "4", "--frames": "2"},
     "gradient": {"-o": "more.ply", "--weights": "other.exr", "--raw": None, "--floats": "fast", "--no-doubts": None},
@@ -87,6 +89,7 @@ STAGES = [
     "judge g.spz --picture gaussians.exr --size 20x20",
     "explain splats.ply --size 20x20 --pixel 9,9", "explain g.spz --size 20x20 --pixel 9,9",
     "gradient g.spz --size 20x20 --profile gsplat-1.6 --weights picture.exr -o out.ply",
+    "project g.spz --size 20x20 --profile gsplat-1.6 -o out.npz",
     "convert g.ply -o out.spz", "convert g.spz -o out.ply", "convert g.spz -o out.splat",
 ]
 # Of the commands whose outcome is a measurement: what is refused.

@@ -92,6 +92,8 @@ declare -A wanted=(
     doubtful? doubtful_by_reason.least? ms.gradient"
   [judge-gradients]="verdict profile parameters gaussians.equal gaussians.rounding gaussians.explained gaussians.wrong
     kinds.mean.wrong? kinds.sh.max_abs? worst ms.judge"
+  [project]="profile floats gaussians shown tile_width tile_height isects ms.project"
+  [judge-intermediates]="verdict profile floats stage? arrays ms.judge"
   [chart]="scenes methods points seconds"
   [bench]="host lines wrong_pictures peak_rss_bytes machine?"
   [info]="kind points bytes? bytes_per_point? bounds.min bounds.max sound?"
@@ -218,6 +220,10 @@ write judge-gradients judge_gradients judge two.splat --profile gsplat-1.6 --siz
   --gradients two-g.ply
 write judge-gradients-wrong judge_gradients judge two.splat --profile gsplat-1.6-aa --size 40x40 --weights two.exr \
   --gradients two-g.ply
+write project project project two.splat --profile gsplat-1.6 --size 40x40 -o two.npz
+write judge-intermediates judge_intermediates judge two.splat --profile gsplat-1.6 --size 40x40 --intermediates two.npz
+write judge-intermediates-wrong judge_intermediates judge two.splat --profile gsplat-1.6 --size 40x41 \
+  --intermediates two.npz
 write explain-splat explain explain one.ply --size 64x48 --splat 0
 write explain-octree explain explain knot.cot --size 64x48 --error 1 --splat 9 --pixel 32,24
 write explain-leaf explain explain knot.cot --size 2048x2048 --error 0.5 --splat 9

@@ -19,7 +19,8 @@ fail() {
 run() {
   case "${2-} ${3-}" in
     'judge --suite') run_as_typed "$@" ;;
-    'render '* | 'explain '* | 'verify '* | 'judge '* | 'gradient '*) run_as_typed "$1" "$2" --plain "${@:3}" ;;
+    'render '* | 'explain '* | 'verify '* | 'judge '* | 'gradient '* | 'project '*)
+      run_as_typed "$1" "$2" --plain "${@:3}" ;;
     *) run_as_typed "$@" ;;
   esac
 }
