@@ -33,7 +33,7 @@ static void add_array(npz_writer *w, const char *name, const char *behind, const
     if (type == DOUBLES)
       conic_store_double(to, ((const double *)numbers)[i]);
     else if (type == WHOLE_DOUBLES)
-      conic_store_32(to, (uint32_t)(int32_t)((const double *)numbers)[i]);
+      conic_store_32(to, (uint32_t)oracle_min(oracle_max(((const double *)numbers)[i], 0.0), INT32_MAX));
     else if (type == INTS)
       conic_store_32(to, (uint32_t)((const int32_t *)numbers)[i]);
     else

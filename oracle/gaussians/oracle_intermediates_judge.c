@@ -208,8 +208,10 @@ static void note_entry(intermediates_judging *j, int name, size_t k, uint32_t ga
                  .row = k, .gaussian = gaussian, .found = found, .value = low, .low = low, .high = high, .what = what});
 }
 
+/* What is no whole number that doubles have is the id of no tile. */
 static uint64_t id_of(const intermediates_judging *j, size_t k) {
-  return (uint64_t)(int64_t)given_number(j, GIVEN_ISECT_IDS, k);
+  const double id = given_number(j, GIVEN_ISECT_IDS, k);
+  return id >= 0.0 && id < 0x1p53 ? (uint64_t)id : UINT64_MAX;
 }
 
 /* Whether the entries are in order; and sorts them by rows. */

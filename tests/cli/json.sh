@@ -93,7 +93,8 @@ declare -A wanted=(
   [judge-gradients]="verdict profile parameters gaussians.equal gaussians.rounding gaussians.explained gaussians.wrong
     kinds.mean.wrong? kinds.sh.max_abs? worst ms.judge"
   [project]="profile floats gaussians shown tile_width tile_height isects ms.project"
-  [judge-intermediates]="verdict profile floats stage? arrays ms.judge"
+  [judge-intermediates]="verdict profile floats arrays ms.judge"
+  [judge-intermediates-wrong]="verdict stage arrays"
   [chart]="scenes methods points seconds"
   [bench]="host lines wrong_pictures peak_rss_bytes machine?"
   [info]="kind points bytes? bytes_per_point? bounds.min bounds.max sound?"
