@@ -9,7 +9,7 @@
 #include "core/files/disk.h"
 #include "core/files/file.h"
 
-enum { MOST_CASES = 256 };
+enum { MOST_CASES = 1024 };
 
 typedef struct suite_case {
   const suite_scene *scene;
@@ -23,12 +23,13 @@ typedef struct conformance_job {
   const char *profile_list;
   unsigned profiles; /* as bits */
   int floats;        /* 0: fast, 1: strict */
+  int most_level;
   int n_cases;
   suite_case cases[MOST_CASES];
   struct { /* for each scene of the table */
     size_t n_records;
     int sh_degree;
-  } about[64];
+  } about[128];
 } conformance_job;
 
 enum { STAGE_SCENES, STAGE_BOUNDS, STAGE_WRITE };
@@ -48,16 +49,28 @@ static void name_case(const suite_case *one, char name[SUITE_PATH_ROOM]) {
 
 /* --- the cases --- */
 
+/* What is made by a recipe has none, as a suite of all in both formats would be too large. */
+static int has_exr(const suite_scene *scene) {
+  return scene->recipe.n == 0;
+}
+
+static int is_made(const conformance_job *job, const suite_scene *scene) {
+  return cli_suite_profiles(scene) & job->profiles && scene->level <= job->most_level;
+}
+
 static conic_status write_case_planes(conformance_job *job, const suite_case *one, const suite_planes *planes) {
   suite_files *files = job->files;
   char name[SUITE_PATH_ROOM], path[2 * SUITE_PATH_ROOM], full[4096];
   name_case(one, name);
-  snprintf(path, sizeof path, "expected/%s.exr", name);
-  conic_status status = cli_suite_join(files->context, files->folder, path, full, sizeof full);
-  if (status == CONIC_OK)
-    status = cli_suite_write_exr(files->context, full, planes);
-  if (status == CONIC_OK)
-    status = cli_suite_add_file(files, path);
+  conic_status status = CONIC_OK;
+  if (has_exr(one->scene)) {
+    snprintf(path, sizeof path, "expected/%s.exr", name);
+    status = cli_suite_join(files->context, files->folder, path, full, sizeof full);
+    if (status == CONIC_OK)
+      status = cli_suite_write_exr(files->context, full, planes);
+    if (status == CONIC_OK)
+      status = cli_suite_add_file(files, path);
+  }
   snprintf(path, sizeof path, "expected/%s.npy", name);
   if (status == CONIC_OK)
     status = cli_suite_join(files->context, files->folder, path, full, sizeof full);
@@ -71,6 +84,7 @@ static conic_status bound_gaussians(conformance_job *job, const conic_gaussians 
   conic_context *context = job->files->context;
   const conic_float_model model = model_of_job(job);
   const size_t n_pixels = (size_t)planes->width * (size_t)planes->height;
+  const int step = one->scene->step;
   const float *behind = one->scene->background;
   conic_gaussian_options options;
   conic_camera camera;
@@ -79,14 +93,18 @@ static conic_status bound_gaussians(conformance_job *job, const conic_gaussians 
   memcpy(options.background, behind, sizeof options.background);
   cli_suite_camera(one->scene, &camera);
   conic_gaussian_bound *bounds = conic_memory_allocate(context, n_pixels, sizeof *bounds);
-  conic_status status =
-      bounds ? conic_gaussian_bound_pixels(context, gaussians, &camera, &options, &model, NULL, n_pixels, bounds)
-             : CONIC_ERROR_MEMORY;
+  uint32_t *pixels = conic_memory_allocate(context, n_pixels, sizeof *pixels);
+  for (size_t i = 0; pixels && i < n_pixels; i++)
+    pixels[i] = (uint32_t)(cli_suite_judged_at((int)i / planes->width, step) * camera.width +
+                           cli_suite_judged_at((int)i % planes->width, step));
+  conic_status status = bounds && pixels ? conic_gaussian_bound_pixels(context, gaussians, &camera, &options, &model,
+                                                                       pixels, n_pixels, bounds)
+                                         : CONIC_ERROR_MEMORY;
   for (size_t i = 0; status == CONIC_OK && i < n_pixels; i++)
     one->n_doubtful += bounds[i].doubts > 0;
   if (status == CONIC_OK)
     status = cli_suite_take_bounds(context, bounds, behind[0] + behind[1] + behind[2] > 0.0f, planes);
-  conic_memory_release(context, bounds);
+  conic_memory_release_these(context, bounds, pixels);
   return status;
 }
 
@@ -114,7 +132,8 @@ static conic_status bound_splats(conformance_job *job, const conic_splats *splat
 }
 
 static conic_status make_case(conformance_job *job, const suite_content *content, suite_case *one) {
-  suite_planes planes = {.width = one->scene->width, .height = one->scene->height};
+  suite_planes planes = {.width = cli_suite_judged(one->scene->width, one->scene->step),
+                         .height = cli_suite_judged(one->scene->height, one->scene->step)};
   double start = cli_seconds();
   conic_status status = one->profile == SUITE_SURFACE ? bound_splats(job, &content->model.points, one, &planes)
                                                       : bound_gaussians(job, &content->gaussians, one, &planes);
@@ -137,7 +156,7 @@ static conic_status make_suite_scene(conformance_job *job, int i_scene) {
   job->base.stages[STAGE_SCENES].seconds += cli_seconds() - start;
   if (status != CONIC_OK)
     return status;
-  job->about[i_scene].n_records = scene->make ? content.gaussians.count : content.model.points.count;
+  job->about[i_scene].n_records = scene->make_splats ? content.model.points.count : content.gaussians.count;
   job->about[i_scene].sh_degree = content.gaussians.sh_degree;
   for (int p = 0; status == CONIC_OK && p < SUITE_PROFILES; p++)
     if (cli_suite_profiles(scene) & job->profiles & 1u << p) {
@@ -190,6 +209,9 @@ static void describe_scene(cli_json *json, const conformance_job *job, int i_sce
     describe_path(json, "glb", "scenes", scene->name, ".glb");
   cli_json_close(json);
   cli_json_counts(json, NULL, {"width", (uint64_t)scene->width}, {"height", (uint64_t)scene->height});
+  if (scene->step)
+    cli_json_count(json, "step", (uint64_t)scene->step);
+  cli_json_text(json, "stage", conic_gaussian_stage_name(scene->stage));
   cli_json_object(json, "camera");
   describe_path(json, "conic", "cameras", scene->name, ".json");
   describe_path(json, "colmap", "cameras", scene->name, "");
@@ -213,7 +235,8 @@ static void describe_cases(cli_json *json, const conformance_job *job) {
     cli_json_count(json, "level", (uint64_t)one->scene->level);
     cli_json_text(json, "scene", one->scene->name);
     cli_json_text(json, "profile", cli_suite_profile_name(one->profile));
-    describe_path(json, "exr", "expected", name, ".exr");
+    if (has_exr(one->scene))
+      describe_path(json, "exr", "expected", name, ".exr");
     describe_path(json, "npy", "expected", name, ".npy");
     cli_json_count(json, "doubtful_pixels", one->n_doubtful);
     cli_json_close(json);
@@ -246,7 +269,7 @@ static void describe_suite(cli_json *json, const conformance_job *job) {
   describe_levels(json, job);
   cli_json_array(json, "scenes");
   for (int i = 0; i < cli_n_suite_scenes; i++)
-    if (cli_suite_profiles(&cli_suite_scenes[i]) & job->profiles)
+    if (is_made(job, &cli_suite_scenes[i]))
       describe_scene(json, job, i);
   cli_json_close(json);
   describe_cases(json, job);
@@ -342,7 +365,7 @@ static int make_suite(void *cookie) {
   conic_status status = make_suite_folders(job->files);
   for (int i = 0; status == CONIC_OK && i < cli_n_suite_scenes; i++) {
     cli_session_part(job->base.session, "scenes", i + 1, cli_n_suite_scenes);
-    if (cli_suite_profiles(&cli_suite_scenes[i]) & job->profiles)
+    if (is_made(job, &cli_suite_scenes[i]))
       status = make_suite_scene(job, i);
   }
   if (status == CONIC_OK)
@@ -383,11 +406,12 @@ static void release_suite(void *cookie) {
 
 static int run_conformance(cli_session *session, int argc, char **argv) {
   static const cli_build_steps steps = {make_suite, tell_suite, report_suite, release_suite};
-  conformance_job job = {.base = {session, .stages = {{"scenes"}, {"bounds"}, {"write"}}}};
+  conformance_job job = {.most_level = SUITE_LEVELS, .base = {session, .stages = {{"scenes"}, {"bounds"}, {"write"}}}};
   const char *positional[argc];
   int n_positional;
   const cli_option options[] = {
       {"profile", CLI_TEXT, &job.profile_list, "NAMES", "only these profiles, with commas between [all]"},
+      {"level", CLI_INT, &job.most_level, "N", "only cases up to this level [7]", 1, SUITE_LEVELS},
       {"floats", CLI_CHOICE, &job.floats, "KIND",
        "what renderers may round: fast: as a GPU's fast mathematics; strict: e^x to 2 ulp [fast]",
        .choices = float_names},
@@ -409,7 +433,7 @@ static int run_conformance(cli_session *session, int argc, char **argv) {
 const cli_command cli_conformance = {
     .name = "conformance",
     .summary = "writes a suite of cases by which any Gaussian renderer can be judged",
-    .usage = "conic conformance OUT/ [--profile NAME[,NAME]] [--floats fast|strict]",
+    .usage = "conic conformance OUT/ [--profile NAME[,NAME]] [--level N] [--floats fast|strict]",
     .run = run_conformance,
     .description = "Writes small scenes, their cameras, and what each pixel may be, into a folder. Draw them with your "
                    "renderer, and let conic judge --suite compare.",

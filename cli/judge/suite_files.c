@@ -176,7 +176,7 @@ void cli_suite_release_content(conic_context *context, suite_content *content) {
 static conic_status write_gaussian_scene(suite_files *suite, const suite_scene *scene, const char *path,
                                          const char *full, suite_content *content) {
   conic_gaussians made;
-  conic_status status = scene->make(suite->context, &made);
+  conic_status status = cli_suite_make(suite->context, scene, &made);
   if (status == CONIC_OK && scene->formats & SUITE_SPZ)
     settle_for_spz(&made);
   if (status == CONIC_OK)
@@ -203,8 +203,8 @@ conic_status cli_suite_write_scene(suite_files *suite, const suite_scene *scene,
   snprintf(path, sizeof path, "scenes/%s.ply", scene->name);
   conic_status status = cli_suite_join(suite->context, suite->folder, path, full, sizeof full);
   if (status == CONIC_OK)
-    status = scene->make ? write_gaussian_scene(suite, scene, path, full, content)
-                         : write_splat_scene(suite, scene, path, full, content);
+    status = scene->make_splats ? write_splat_scene(suite, scene, path, full, content)
+                                : write_gaussian_scene(suite, scene, path, full, content);
   snprintf(path, sizeof path, "scenes/%s.spz", scene->name);
   if (status == CONIC_OK && scene->formats & SUITE_SPZ)
     status = write_stored_spz(suite, path, &content->gaussians);

@@ -4,6 +4,7 @@
 
 #include "cli/judge/suite_files.h"
 #include "cli/judge/suite_planes.h"
+#include "cli/judge/suite_scenes.h"
 #include "core/files/file.h"
 #include "core/files/mapping.h"
 
@@ -17,7 +18,8 @@ static conic_status read_expected(conic_context *context, const char *folder, co
   char path[4096], found[CONIC_SHA256_ROOM];
   conic_mapping file;
   conic_sha256 sum;
-  *planes = (suite_planes){.width = entry->width, .height = entry->height};
+  *planes = (suite_planes){.width = cli_suite_judged(entry->width, entry->step),
+                           .height = cli_suite_judged(entry->height, entry->step)};
   conic_status status = cli_suite_join(context, folder, entry->npy, path, sizeof path);
   if (status == CONIC_OK)
     status = conic_mapping_open(context, path, &file);
@@ -56,8 +58,12 @@ static double find_distance(double from, double to, double low, double high, int
   return channel == 4 && off < INFINITY ? 1e-30 * off : off;
 }
 
-static conic_pixel_class judge_suite_pixel(const conic_picture *picture, const suite_planes *expected, size_t pixel,
+/* The i-th pixel that is judged. */
+static conic_pixel_class judge_suite_pixel(const conic_picture *picture, const suite_planes *expected, size_t i,
                                            suite_verdict *verdict, double *farthest) {
+  const int step = verdict->entry->step, x = cli_suite_judged_at((int)(i % (size_t)expected->width), step),
+            y = cli_suite_judged_at((int)(i / (size_t)expected->width), step);
+  const size_t pixel = (size_t)y * (size_t)verdict->entry->width + (size_t)x;
   conic_pixel_class class = CONIC_PIXEL_EQUAL;
   for (int c = 0; c < SUITE_CHANNELS; c++) {
     double from, to;
@@ -65,7 +71,7 @@ static conic_pixel_class judge_suite_pixel(const conic_picture *picture, const s
     if (!find_suite_number(picture, pixel, c, &from, &to))
       continue;
     for (int range = 0; range < SUITE_RANGES; range++)
-      ends[range] = expected->numbers[cli_suite_at(expected, range, pixel) + (size_t)c];
+      ends[range] = expected->numbers[cli_suite_at(expected, range, i) + (size_t)c];
     conic_pixel_class this_one = has_common(from, to, ends[SUITE_VALUE], ends[SUITE_VALUE])  ? CONIC_PIXEL_EQUAL
                                  : has_common(from, to, ends[SUITE_LOW], ends[SUITE_HIGH])   ? CONIC_PIXEL_ROUNDED
                                  : has_common(from, to, ends[SUITE_LEAST], ends[SUITE_MOST]) ? CONIC_PIXEL_EXPLAINED
@@ -78,8 +84,8 @@ static conic_pixel_class judge_suite_pixel(const conic_picture *picture, const s
     if (!(distance > *farthest))
       continue;
     *farthest = distance;
-    verdict->x = (int)(pixel % (size_t)expected->width);
-    verdict->y = (int)(pixel / (size_t)expected->width);
+    verdict->x = x;
+    verdict->y = y;
     verdict->channel = c;
     verdict->found = from > high ? from : to;
     verdict->low = low;
@@ -98,8 +104,9 @@ static void judge_suite_picture(const conic_picture *picture, const suite_planes
   verdict->outcome = n_wrong <= judging->max_wrong ? SUITE_IS_RIGHT : SUITE_IS_WRONG;
   if (n_wrong)
     snprintf(verdict->message, sizeof verdict->message,
-             "%zu of %zu pixels are wrong; at %d,%d %s is %.6g, and may be %.6g to %.6g", n_wrong, n_pixels, verdict->x,
-             verdict->y, cli_suite_channel_names[verdict->channel], verdict->found, verdict->low, verdict->high);
+             "%s%s%zu of %zu pixels are wrong; at %d,%d %s is %.6g, and may be %.6g to %.6g", verdict->entry->stage,
+             verdict->entry->stage[0] ? ": " : "", n_wrong, n_pixels, verdict->x, verdict->y,
+             cli_suite_channel_names[verdict->channel], verdict->found, verdict->low, verdict->high);
 }
 
 /* Finds the case's picture; returns 0 where there is none. */

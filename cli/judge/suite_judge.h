@@ -17,7 +17,7 @@ typedef struct suite_verdict {
   size_t pixels[CONIC_N_PIXEL_CLASSES]; /* all 0 if it could not be judged */
   int x, y, channel;                    /* the value that is farthest off, if pixels are wrong; channel: SUITE_… */
   double found, low, high;
-  char message[160]; /* the fault; empty if there is none */
+  char message[192]; /* the fault; empty if there is none */
   double seconds;
 } suite_verdict;
 

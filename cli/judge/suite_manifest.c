@@ -5,7 +5,8 @@ enum { SUITE_MOST_LEVELS = 99, SUITE_MOST_ENTRIES = 4096 };
 /* A scene or a file of the manifest. */
 typedef struct manifest_scene {
   char name[SUITE_WORD_ROOM], ply[2 * SUITE_NAME_ROOM], camera[2 * SUITE_NAME_ROOM];
-  int width, height;
+  char stage[SUITE_WORD_ROOM];
+  int width, height, step;
 } manifest_scene;
 
 typedef struct manifest_file {
@@ -110,10 +111,15 @@ static void read_scene_entry(conic_json *json, manifest_scene *scene) {
                                             {"files", INNER_PATH, AT(manifest_scene, ply), .inner = "ply"},
                                             {"camera", INNER_PATH, AT(manifest_scene, camera), .inner = "conic"},
                                             {"width", NUMBER, AT(manifest_scene, width), 65535.0},
-                                            {"height", NUMBER, AT(manifest_scene, height), 65535.0}};
-  read_object(json, members, 5, scene);
-  if (!scene->name[0] || !scene->ply[0] || !scene->camera[0] || !scene->width || !scene->height)
-    conic_json_wrong(json, "a scene lacks its name, its files.ply, its camera.conic, its width or its height");
+                                            {"height", NUMBER, AT(manifest_scene, height), 65535.0},
+                                            {"stage", WORD, AT(manifest_scene, stage)},
+                                            {"step", NUMBER, AT(manifest_scene, step), 65535.0}};
+  read_object(json, members, 7, scene);
+  if (!scene->name[0] || !scene->ply[0] || !scene->camera[0] || !scene->width || !scene->height ||
+      scene->step / 2 >= scene->width || scene->step / 2 >= scene->height)
+    conic_json_wrong(
+        json,
+        "a scene lacks its name, its files.ply, its camera.conic, its width or its height, or its step is larger");
 }
 
 static void read_case_entry(conic_json *json, suite_entry *one) {
@@ -200,6 +206,8 @@ static int has_scene(manifest_reader *r, suite_entry *one) {
     memcpy(one->camera, scene->camera, sizeof one->camera);
     one->width = scene->width;
     one->height = scene->height;
+    one->step = scene->step;
+    memcpy(one->stage, scene->stage, sizeof one->stage);
     return 1;
   }
   return 0;

@@ -332,6 +332,41 @@ static conic_status make_flat_room(conic_context *context, conic_gaussians *gaus
   return status;
 }
 
+/* The k-th number by chance of Gaussian i, from −1 to 1. */
+static double by_chance(size_t i, uint64_t k) {
+  return 2.0 * conic_random_uniform(7, i, k) - 1.0;
+}
+
+static conic_status make_by_recipe(conic_context *context, const suite_recipe *r, conic_gaussians *gaussians) {
+  enum { PLACE, SIZE = 3, SPIN = 6, OPACITY = 10, COLOR = 11, BANDS = 14 };
+  int degree = 0;
+  for (int l = 1; l <= 3; l++)
+    degree = r->bands >> l & 1 ? l : degree;
+  conic_status status = conic_gaussians_allocate(context, r->n, degree, 0, gaussians);
+  for (size_t i = 0; status == CONIC_OK && i < r->n; i++) {
+    suite_one one = {.opacity = r->opacity[0] + (r->opacity[1] - r->opacity[0]) * 0.5 * (by_chance(i, OPACITY) + 1.0)};
+    int is_turned = r->rotation[0] == 0.0 && r->rotation[3] == 0.0;
+    for (int k = 0; k < 4; k++)
+      one.rotation[k] = is_turned ? by_chance(i, SPIN + (uint64_t)k) : r->rotation[k];
+    for (int axis = 0; axis < 3; axis++) {
+      one.mean[axis] = r->place[axis] + r->spread[axis] * by_chance(i, PLACE + (uint64_t)axis);
+      one.scale[axis] = r->size[axis] * (is_turned ? 1.0 + 0.5 * by_chance(i, SIZE + (uint64_t)axis) : 1.0);
+      one.color[axis] =
+          (r->brightness > 0.0 ? r->brightness : 1.0) * (0.5 + 0.45 * by_chance(i, COLOR + (uint64_t)axis));
+    }
+    put_one(gaussians, i, &one);
+    for (size_t k = 3; k < conic_harmonics_of_degree(degree); k++) {
+      const int l = k < 12 ? 1 : k < 27 ? 2 : 3;
+      conic_gaussians_put_harmonic(gaussians, i, k, r->bands >> l & 1 ? (float)(0.4 * by_chance(i, BANDS + k)) : 0.0f);
+    }
+  }
+  return status;
+}
+
+conic_status cli_suite_make(conic_context *context, const suite_scene *scene, conic_gaussians *gaussians) {
+  return scene->make ? scene->make(context, gaussians) : make_by_recipe(context, &scene->recipe, gaussians);
+}
+
 /* --- surface splats --- */
 
 enum { SURFEL_FIELDS = CONIC_SPLATS_TANGENTS | CONIC_SPLATS_COLORS };
@@ -407,32 +442,41 @@ static conic_status make_steep(conic_context *context, conic_splats *splats) {
 
 /* How a scene is seen: small pictures that are not square, and whose sides are no multiples of a tile. */
 #define SMALL .width = 36, .height = 20, .center = {18.0, 10.0}
+#define TINY .width = 20, .height = 12, .center = {10.0, 6.0}
+#define LARGE .width = 640, .height = 360, .center = {320.0, 180.0}, .step = 13
 #define MIDDLE .width = 50, .height = 38, .center = {25.0, 19.0}
 #define AHEAD .rotation = {1.0, 0.0, 0.0, 0.0}, .eye = {0.0, 0.0, -4.0}, .focal = {32.0, 32.0}
 #define AT_ORIGIN .rotation = {1.0, 0.0, 0.0, 0.0}, .focal = {32.0, 32.0}
+#define AS_IT_IS .rotation = {1.0, 0.0, 0.0, 0.0}
+#define OPAQUE .opacity = {0.3, 0.95}
+#define EVERYWHERE .drawn_by = SOLIDS | DISCS
+#define FREE_CENTER .drawn_by = SOLIDS | DISCS | SUITE_WITH_CENTER
+#define STAGE(name) .stage = CONIC_GAUSSIAN_STAGE_##name
 #define TURNED .rotation = {8.0, 2.0, -1.0, 1.0}, .eye = {-1.125, -1.75, -3.5}, .focal = {36.0, 36.0}
 
 const suite_scene cli_suite_scenes[] = {
     {"ball", "one round Gaussian: the size of its picture, the falloff, the dilation", 1, SMALL, AHEAD,
-     .drawn_by = SOLIDS, .make = make_ball},
+     .drawn_by = SOLIDS | DISCS, .make = make_ball},
     {"ellipse", "one Gaussian of three sizes, turned: the rotation, the order of the quaternion, the projection", 1,
-     SMALL, AHEAD, .drawn_by = SOLIDS, .formats = SUITE_SPZ | SUITE_GLB, .make = make_ellipse},
+     SMALL, AHEAD, .drawn_by = SOLIDS | DISCS, .formats = SUITE_SPZ | SUITE_GLB, .make = make_ellipse},
     {"solid", "one Gaussian of opacity 0.9999, of which a colour is below 0: the largest alpha, the clamp at 0", 1,
-     SMALL, AHEAD, .drawn_by = SOLIDS, .make = make_solid},
+     SMALL, AHEAD, .stage = CONIC_GAUSSIAN_STAGE_ALPHA, .drawn_by = SOLIDS | DISCS, .make = make_solid},
     {"harmonics", "one Gaussian of degree 3: every harmonic, and the order of f_rest", 1, SMALL, TURNED,
-     .drawn_by = SOLIDS, .formats = SUITE_GLB, .make = make_harmonics},
+     .stage = CONIC_GAUSSIAN_STAGE_COLOR, .drawn_by = SOLIDS | DISCS, .formats = SUITE_GLB, .make = make_harmonics},
     {"disc", "one 2D Gaussian, tilted", 1, SMALL, AHEAD, .drawn_by = DISCS, .make = make_disc},
 
     {"overlap", "balls that cover one another, and stand in the file in another order than in depth", 2, SMALL, AHEAD,
-     .drawn_by = SOLIDS, .formats = SUITE_SPZ, .make = make_overlap},
+     .stage = CONIC_GAUSSIAN_STAGE_SORT, .drawn_by = SOLIDS | DISCS, .formats = SUITE_SPZ, .make = make_overlap},
     {"faint", "a pile of opacities from under 1/255 to 0.99: what is left out, and where compositing ends", 2, SMALL,
-     AHEAD, .drawn_by = SOLIDS, .make = make_faint},
+     AHEAD, .stage = CONIC_GAUSSIAN_STAGE_ALPHA, .drawn_by = SOLIDS | DISCS, .make = make_faint},
     {"off-center", "a principal point off the middle, and two focal lengths", 2, 36, 20, .focal = {40.0, 30.0},
      .center = {14.25, 12.75}, .rotation = {8.0, 2.0, -1.0, 1.0}, .eye = {-1.125, -1.75, -3.5},
      .drawn_by = SOLIDS | SUITE_WITH_CENTER, .make = make_ring},
     {"background", "harmonics of degree 2 before a coloured background", 2, SMALL, TURNED,
-     .background = {0.9f, 0.5f, 0.2f}, .drawn_by = BLURRED, .make = make_ring},
-    {"discs", "2D Gaussians that cover one another", 2, SMALL, AHEAD, .drawn_by = DISCS, .make = make_discs},
+     .background = {0.9f, 0.5f, 0.2f}, .stage = CONIC_GAUSSIAN_STAGE_BLENDING, .drawn_by = BLURRED | DISCS,
+     .make = make_ring},
+    {"discs", "2D Gaussians that cover one another", 2, SMALL, AHEAD, .stage = CONIC_GAUSSIAN_STAGE_SORT,
+     .drawn_by = DISCS, .make = make_discs},
 
     {"room", "300 Gaussians of degree 3, as they are trained", 3, MIDDLE, TURNED, .drawn_by = SOLIDS,
      .formats = SUITE_GLB, .make = make_trained},
@@ -441,28 +485,102 @@ const suite_scene cli_suite_scenes[] = {
     /* Without a near plane, Gaussians next to the eye have no useful bounds. */
     {"crowd", "4000 Gaussians about the eye: the near plane, what is behind, and the borders", 4, MIDDLE,
      .rotation = {8.0, 2.0, -1.0, 1.0}, .eye = {-0.75, -0.75, -1.75}, .focal = {30.0, 30.0},
-     .drawn_by = SOLIDS | SUITE_WITH_NEAR, .make = make_crowd},
+     .stage = CONIC_GAUSSIAN_STAGE_SORT, .drawn_by = SOLIDS | SUITE_WITH_NEAR, .make = make_crowd},
     {"extremes", "huge ones, needles, plates, specks below a pixel, and what is 10,000 away", 4, MIDDLE, AHEAD,
      .drawn_by = SOLIDS, .make = make_extremes},
 
-    {"least", "opacities about 1/255, each over a pixel's centre", 5, SMALL, AHEAD, .drawn_by = BLURRED,
-     .make = make_least},
-    {"end", "piles by which T comes to about 1e-4", 5, SMALL, AHEAD, .drawn_by = BLURRED, .make = make_end},
-    {"ties", "equal depths, and depths apart by less than a float tells", 5, SMALL, AHEAD, .drawn_by = BLURRED,
-     .make = make_ties},
-    {"quaternions", "quaternions of lengths from 0.01 to 1000", 5, SMALL, AHEAD, .drawn_by = BLURRED,
+    {"least", "opacities about 1/255, each over a pixel's centre", 5, SMALL, AHEAD, .stage = CONIC_GAUSSIAN_STAGE_ALPHA,
+     .drawn_by = BLURRED, .make = make_least},
+    {"end", "piles by which T comes to about 1e-4", 5, SMALL, AHEAD, .stage = CONIC_GAUSSIAN_STAGE_BLENDING,
+     .drawn_by = BLURRED, .make = make_end},
+    {"ties", "equal depths, and depths apart by less than a float tells", 5, SMALL, AHEAD,
+     .stage = CONIC_GAUSSIAN_STAGE_SORT, .drawn_by = BLURRED | DISCS, .make = make_ties},
+    {"quaternions", "quaternions of lengths from 0.01 to 1000", 5, SMALL, AHEAD, .drawn_by = SOLIDS | DISCS,
      .make = make_quaternions},
     {"broken", "records with NaN, with infinity or without a rotation, which are left out, among sound ones", 5, SMALL,
      AHEAD, .drawn_by = BLURRED, .make = make_broken},
     {"far-away", "a scene and its camera 1,100 from the origin, where floats are coarse", 5, SMALL,
-     .rotation = {1.0, 0.0, 0.0, 0.0}, .focal = {32.0, 32.0}, .eye = {600.0, -350.0, 896.0}, .drawn_by = BLURRED,
-     .make = make_far_away},
+     .rotation = {1.0, 0.0, 0.0, 0.0}, .focal = {32.0, 32.0}, .eye = {600.0, -350.0, 896.0},
+     .drawn_by = BLURRED | DISCS, .make = make_far_away},
     {"near", "means at the near planes 0.2 and 0.01, before and behind them", 5, SMALL, AT_ORIGIN, .drawn_by = BLURRED,
      .make = make_near},
     {"aside", "large ones beside the picture, whose slopes are clamped", 5, SMALL, AHEAD, .drawn_by = BLURRED,
      .make = make_aside},
     {"edge-on", "2D Gaussians seen from the edge, and nearly", 5, SMALL, AHEAD, .drawn_by = DISCS,
      .make = make_edge_on},
+
+    {"band-1", "harmonics of degree 1 alone", 1, TINY, AHEAD, EVERYWHERE, STAGE(COLOR),
+     .recipe = {1, .size = {0.5, 0.4, 0.3}, .opacity = {0.9, 0.9}, .bands = 2}},
+    {"band-2", "harmonics of degree 2 alone", 1, TINY, TURNED, EVERYWHERE, STAGE(COLOR),
+     .recipe = {2, .spread = {0.3, 0.2, 0.2}, .size = {0.5, 0.4, 0.3}, .opacity = {0.9, 0.9}, .bands = 4}},
+    {"band-3", "harmonics of degree 3 alone", 1, TINY, TURNED, EVERYWHERE, STAGE(COLOR),
+     .recipe = {2, .spread = {0.3, 0.2, 0.2}, .size = {0.5, 0.4, 0.3}, .opacity = {0.9, 0.9}, .bands = 8}},
+    {"turned-x", "one Gaussian turned about x", 1, TINY, AHEAD, EVERYWHERE,
+     .recipe = {1, {0.2, 0.1, 0.0}, .size = {0.6, 0.3, 0.1}, .rotation = {0.9, 0.4, 0.0, 0.0}, OPAQUE}},
+    {"turned-y", "one Gaussian turned about y", 1, TINY, AHEAD, EVERYWHERE,
+     .recipe = {1, {0.2, 0.1, 0.0}, .size = {0.6, 0.3, 0.1}, .rotation = {0.9, 0.0, 0.4, 0.0}, OPAQUE}},
+    {"turned-z", "one Gaussian turned about z", 1, TINY, AHEAD, EVERYWHERE,
+     .recipe = {1, {0.2, 0.1, 0.0}, .size = {0.6, 0.3, 0.1}, .rotation = {0.9, 0.0, 0.0, 0.4}, OPAQUE}},
+    {"needle", "one Gaussian a thousand times as long as thick", 1, TINY, AHEAD, EVERYWHERE,
+     .recipe = {1, .size = {1.5, 0.0015, 0.0015}, OPAQUE}},
+    {"plate", "one Gaussian without thickness", 1, TINY, AHEAD, EVERYWHERE,
+     .recipe = {1, .size = {0.6, 0.4, 1e-12}, OPAQUE}},
+    {"point", "Gaussians without size", 1, TINY, AHEAD, EVERYWHERE,
+     .recipe = {9, .spread = {1.0, 0.6, 0.5}, .size = {1e-12, 1e-12, 1e-12}, .opacity = {0.9, 0.99}}},
+    {"empty", "Gaussians behind the eye alone: the background", 1, TINY, AHEAD, EVERYWHERE,
+     .background = {0.25f, 0.5f, 0.75f}, .recipe = {3, {0.0, 0.0, -8.0}, {1.0, 1.0, 1.0}, {0.3, 0.2, 0.1}, OPAQUE}},
+
+    {"most", "opacities from 0.98 to 1: the largest alpha", 2, TINY, AHEAD, EVERYWHERE, STAGE(ALPHA),
+     .recipe = {12, .spread = {1.2, 0.7, 0.5}, .size = {0.15, 0.1, 0.1}, .opacity = {0.98, 0.99999}}},
+    {"bright", "colours above 1, which nothing limits", 2, TINY, AHEAD, EVERYWHERE, STAGE(COLOR),
+     .recipe = {6, .spread = {0.8, 0.5, 0.5}, .size = {0.4, 0.3, 0.2}, OPAQUE, .brightness = 6.0}},
+    {"rolled", "a camera that lies on its side", 2, TINY, .rotation = {1.0, 0.0, 0.0, 1.0}, .eye = {0.0, 0.0, -4.0},
+     .focal = {32.0, 32.0}, EVERYWHERE,
+     .recipe = {6, .spread = {0.8, 0.5, 0.5}, .size = {0.5, 0.2, 0.1}, OPAQUE, .bands = 2}},
+    {"upside-down", "a camera that looks back, upside down", 2, TINY, .rotation = {0.0, 1.0, 0.0, 0.0},
+     .eye = {0.0, 0.0, 4.0}, .focal = {32.0, 32.0}, EVERYWHERE,
+     .recipe = {6, .spread = {0.8, 0.5, 0.5}, .size = {0.5, 0.2, 0.1}, OPAQUE, .bands = 2}},
+    {"one-pixel", "a picture of one pixel", 2, 1, 1, .center = {0.5, 0.5}, AHEAD, EVERYWHERE,
+     .recipe = {6, .spread = {0.1, 0.1, 0.5}, .size = {0.1, 0.1, 0.1}, OPAQUE}},
+    {"column", "a picture of 5 x 35 pixels", 2, 5, 35, .center = {2.5, 17.5}, AHEAD, EVERYWHERE,
+     .recipe = {12, .spread = {0.5, 2.2, 0.5}, .size = {0.3, 0.2, 0.1}, OPAQUE}},
+    {"two-tiles", "a picture of 32 x 16 pixels, two tiles and no more", 2, 32, 16, .center = {16.0, 8.0}, AHEAD,
+     EVERYWHERE, .recipe = {12, .spread = {2.2, 1.2, 0.5}, .size = {0.3, 0.2, 0.1}, OPAQUE}},
+    {"zoomed", "a long focal length, from afar", 2, TINY, AS_IT_IS, .eye = {0.0, 0.0, -60.0}, .focal = {480.0, 480.0},
+     EVERYWHERE, .recipe = {8, .spread = {1.0, 0.6, 0.5}, .size = {0.3, 0.2, 0.1}, OPAQUE}},
+    {"wide", "a focal length of 6 pixels", 2, TINY, AS_IT_IS, .eye = {0.0, 0.0, -2.0}, .focal = {6.0, 6.0}, EVERYWHERE,
+     .recipe = {8, .spread = {2.5, 1.5, 0.5}, .size = {0.4, 0.3, 0.2}, OPAQUE}},
+    {"cropped", "a cut-out: the principal point is beside the picture", 2, 20, 12, .center = {-9.0, 21.0}, AHEAD,
+     FREE_CENTER, .recipe = {10, {2.4, -1.9, 0.0}, {1.2, 0.8, 0.8}, {0.5, 0.3, 0.2}, OPAQUE}},
+
+    {"needles", "long thin ones in all directions", 4, TINY, AHEAD, EVERYWHERE,
+     .recipe = {60, .spread = {1.2, 0.7, 0.7}, .size = {0.9, 0.004, 0.004}, OPAQUE}},
+
+    {"saturated", "so many that T comes to its end everywhere", 5, TINY, AHEAD, EVERYWHERE, STAGE(BLENDING),
+     .recipe = {300, .spread = {1.4, 0.9, 0.8}, .size = {0.6, 0.5, 0.4}, .opacity = {0.2, 0.99}}},
+    {"tied", "two hundred of the same depth", 5, TINY, AHEAD, EVERYWHERE, STAGE(SORT),
+     .recipe = {200, .spread = {1.2, 0.7, 0.0}, .size = {0.3, 0.2, 0.1}, OPAQUE}},
+    {"clamped", "large ones beside an off-centre camera's picture: about which place slopes are clamped", 5, 20, 12,
+     .center = {3.0, 10.5}, AHEAD, FREE_CENTER,
+     .recipe = {24, {1.5, -1.0, -1.5}, {6.0, 4.0, 1.2}, {1.6, 0.8, 0.5}, .opacity = {0.3, 0.6}}},
+    {"straddling", "beside the eye and behind it", 5, TINY, AT_ORIGIN,
+     .drawn_by = SUITE_OF_ELLIPSES | SUITE_OF_FAINTER_ELLIPSES | SUITE_OF_DISCS | SUITE_WITH_NEAR,
+     .recipe = {40, .spread = {1.5, 1.0, 2.0}, .size = {0.2, 0.1, 0.1}, OPAQUE}},
+
+    {"vast", "640 x 360 pixels, 920 tiles", 7, LARGE, AS_IT_IS, .eye = {0.0, 0.0, -4.0}, .focal = {500.0, 500.0},
+     EVERYWHERE, STAGE(SORT),
+     .recipe = {1500, .spread = {2.8, 1.6, 1.5}, .size = {0.12, 0.06, 0.06}, OPAQUE, .bands = 2}},
+    {"cover", "a few that cover hundreds of tiles each", 7, LARGE, AS_IT_IS, .eye = {0.0, 0.0, -4.0},
+     .focal = {500.0, 500.0}, EVERYWHERE, STAGE(SORT),
+     .recipe = {7, .spread = {1.5, 1.0, 1.0}, .size = {1.2, 0.6, 0.4}, .opacity = {0.3, 0.8}}},
+    {"vast-off-center", "640 x 360 pixels of an off-centre camera", 7, 640, 360, .center = {95.0, 300.0}, .step = 13,
+     AS_IT_IS, .eye = {0.0, 0.0, -4.0}, .focal = {450.0, 480.0}, FREE_CENTER,
+     .recipe = {150, {2.0, -0.8, -1.0}, {5.0, 3.5, 2.0}, {0.5, 0.25, 0.2}, .opacity = {0.2, 0.6}}},
+    {"crowded-pixel", "10,000 on one pixel", 7, TINY, AHEAD, EVERYWHERE, STAGE(BLENDING),
+     .recipe = {10000, {0.06, 0.06, 0.0}, {0.03, 0.03, 0.5}, {0.01, 0.01, 0.01}, .opacity = {0.003, 0.01}}},
+    {"crowded-tile", "300,000 in one tile", 7, 16, 16, .center = {8.0, 8.0}, AHEAD,
+     .drawn_by = SUITE_OF_ELLIPSES | SUITE_WITH_NEAR, STAGE(SORT),
+     .recipe = {300000, .spread = {0.9, 0.9, 1.0}, .size = {0.04, 0.02, 0.02}, .opacity = {0.00395, 0.0045}}},
 
     {"splat", "one surface splat, tilted", 6, SMALL, AHEAD, .drawn_by = SUITE_OF_SURFELS, .make_splats = make_splat},
     {"sheet", "splats of one surface, which are blended and normalised", 6, SMALL, AHEAD, .drawn_by = SUITE_OF_SURFELS,
@@ -481,7 +599,8 @@ const char *cli_suite_level_about(int level) {
                                                   "hundreds, as they are trained",
                                                   "thousands, and extreme sizes and places",
                                                   "adversarial: decisions on the edge, ties, broken records",
-                                                  "surface splats, opaque, by the method conic"};
+                                                  "surface splats, opaque, by the method conic",
+                                                  "large pictures, and crowds in a pixel or a tile"};
   return about[level - 1];
 }
 

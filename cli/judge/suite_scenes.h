@@ -1,9 +1,9 @@
 /* The scenes of the conformance suite: what each tests, how it is seen, and which profiles draw it. */
 #pragma once
 
-#include "conic/gaussian_render.h"
+#include "conic/gaussian_intermediates.h"
 
-enum { SUITE_LEVELS = 6 };
+enum { SUITE_LEVELS = 7 };
 
 /* The profiles: the numbers of conic_gaussian_profile, then "surface": surface splats by the method conic. */
 enum { SUITE_SURFACE = CONIC_N_GAUSSIAN_PROFILES, SUITE_PROFILES };
@@ -28,6 +28,16 @@ enum {
   SUITE_WITH_NEAR = 64    /* a near plane */
 };
 
+/* Gaussians by chance: n of them about a place, of a size, an opacity and bands of harmonics. */
+typedef struct suite_recipe {
+  size_t n;
+  double place[3], spread[3], size[3]; /* size: times ½ to 1½, where they are turned by chance */
+  double rotation[4];                  /* zeros: by chance */
+  double opacity[2];                   /* from, to */
+  double brightness;                   /* 0: 1 */
+  unsigned bands;                      /* bits 1 << degree, besides degree 0 */
+} suite_recipe;
+
 typedef struct suite_scene {
   const char *name, *about;
   int level; /* 1 to SUITE_LEVELS */
@@ -38,7 +48,10 @@ typedef struct suite_scene {
   float background[3];
   unsigned drawn_by; /* of the bits above */
   unsigned formats;
-  conic_status (*make)(conic_context *context, conic_gaussians *gaussians);
+  conic_gaussian_stage stage; /* of a renderer, that it tests most */
+  int step;                   /* every so many pixels are judged, in x and in y; 0: all */
+  suite_recipe recipe;        /* n 0: it is made by the next */
+  conic_status (*make)(conic_context *context, conic_gaussians *gaussians);  /* null: by the recipe */
   conic_status (*make_splats)(conic_context *context, conic_splats *splats); /* for the profile surface; else null */
 } suite_scene;
 
@@ -50,5 +63,16 @@ unsigned cli_suite_profiles(const suite_scene *scene);
 
 /* What a level tests in a renderer, in a few words. */
 const char *cli_suite_level_about(int level);
+
+/* Makes its Gaussians. Errors: MEMORY. */
+conic_status cli_suite_make(conic_context *context, const suite_scene *scene, conic_gaussians *gaussians);
+
+/* Of a side of so many pixels, how many are judged, and the i-th of them. */
+static inline int cli_suite_judged(int n, int step) {
+  return step ? (n - step / 2 + step - 1) / step : n;
+}
+static inline int cli_suite_judged_at(int i, int step) {
+  return step ? i * step + step / 2 : i;
+}
 
 void cli_suite_camera(const suite_scene *scene, conic_camera *camera);

@@ -94,7 +94,7 @@ declare -A wanted=(
     kinds.mean.wrong? kinds.sh.max_abs? worst ms.judge"
   [project]="profile floats gaussians shown tile_width tile_height isects ms.project"
   [judge-intermediates]="verdict profile floats arrays ms.judge"
-  [judge-intermediates-wrong]="verdict stage arrays"
+  [judge-intermediates-wrong]="verdict stage? arrays"
   [chart]="scenes methods points seconds"
   [bench]="host lines wrong_pictures peak_rss_bytes machine?"
   [info]="kind points bytes? bytes_per_point? bounds.min bounds.max sound?"
