@@ -1305,6 +1305,7 @@ def conformance(
     progress: Any = None,
     threads: Optional[int] = None,
     profile: Optional[PathLike] = None,
+    level: Optional[int] = None,
     floats: Optional[Literal["fast", "strict"]] = None,
 ) -> Dict[str, Any]:
     """Writes a suite of cases by which any Gaussian renderer can be judged.
@@ -1312,6 +1313,7 @@ def conformance(
     Options:
 
     profile: only these profiles, with commas between [all]
+    level: only cases up to this level [7]
     floats: what renderers may round: fast: as a GPU's fast mathematics; strict: e^x to 2 ulp [fast]
     threads: how many threads compute; the results never depend on it [0: all]
     """

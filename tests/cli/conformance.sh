@@ -4,9 +4,9 @@ set -uo pipefail
 
 source "$1/tests/support/program.bash"
 
-run 0 conformance one --profile gsplat-1.6,2dgs-gsplat --threads 1 --json -
-grep -q '"cases": 23' out || fail "not 23 cases: $(head -c 300 out)"
-run 0 conformance several/ --profile 2dgs-gsplat,gsplat-1.6 --threads 3
+run 0 conformance one --profile gsplat-1.6,2dgs-gsplat --level 6 --threads 1 --json -
+grep -q '"cases": 82' out || fail "not 82 cases: $(head -c 300 out)"
+run 0 conformance several/ --profile 2dgs-gsplat,gsplat-1.6 --level 6 --threads 3
 diff -r one several > out || fail "other bytes with other threads: $(head -3 out)"
 
 # Whatever the manifest lists is there, with that size and hash; and nothing else is.
@@ -15,7 +15,7 @@ sed -n 's/^ *"sha256": "\(.*\)"$/\1/p' one/manifest.json | paste -d ' ' - paths 
 (cd one && sha256sum --quiet --strict -c ../sums) || fail "hashes"
 (cd one && find . -type f ! -name manifest.json | sed 's/^\.\///' | sort) | diff - <(sort paths) > out ||
   fail "the list of files: $(head -3 out)"
-[[ $(wc -l < one/cases.tsv) == 23 ]] || fail "the list of cases"
+[[ $(wc -l < one/cases.tsv) == 82 ]] || fail "the list of cases"
 
 # The manifest is as its schema says; and a manifest that is not would be seen.
 python=
@@ -35,7 +35,7 @@ def places(value):
         yield value
     for item in value.values() if isinstance(value, dict) else value[:1] if isinstance(value, list) else ():
         yield from places(item)
-optional = {"spz", "glb"}
+optional = {"spz", "glb", "exr", "step"}
 for i, place in enumerate(places(manifest)):
     for key in place:
         if key in optional:
@@ -78,8 +78,8 @@ fi
 mkdir mine && touch mine/precious
 run 2 conformance mine --profile khr-2026
 [[ $(ls mine) == precious ]] || fail "a folder of somebody else was written to"
-run 0 conformance one --profile 2dgs-gsplat
-[[ $(wc -l < one/cases.tsv) == 4 ]] || fail "the earlier suite was not replaced"
+run 0 conformance one --profile 2dgs-gsplat --level 1
+[[ $(wc -l < one/cases.tsv) == 15 ]] || fail "the earlier suite was not replaced"
 run 2 conformance
 run 2 conformance a b
 run 2 conformance other --profile gsplat-1.7

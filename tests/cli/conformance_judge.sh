@@ -6,7 +6,7 @@ set -uo pipefail
 source "$1/tests/support/program.bash"
 examples=$1/examples/conformance
 
-run 0 conformance suite --profile gsplat-1.6
+run 0 conformance suite --profile gsplat-1.6 --level 6
 # judged EXIT_CODE PICTURES ARGUMENTS …
 judged() {
   run "$1" judge --suite suite --pictures "${@:2}"
@@ -14,7 +14,7 @@ judged() {
 
 CONIC=$conic "$examples/run-conic" suite own || fail "run-conic"
 judged 0 own --json own.json --junit own.xml
-grep -q '^right: 19 of 19 cases$' out || fail "conic's own pictures: $(cat out)"
+grep -q '^right: 44 of 44 cases$' out || fail "conic's own pictures: $(cat out)"
 [[ $(wc -w < err) -eq 0 ]] || fail "notes: $(cat err)"
 grep -q '"verdict": "right"' own.json || fail "the JSON of what is right"
 
@@ -41,14 +41,15 @@ print(*[case["name"][:-11] for case in json.load(open("fault.json"))["cases"] if
 if [[ -n $numpy ]]; then
   "$numpy" "$examples/numpy-renderer.py" suite numpy 5 || fail "the numpy renderer ends"
   judged 0 numpy
-  grep -q '^right: 19 of 19 cases$' out || fail "the numpy renderer: $(cat out)"
+  grep -q '^right: 44 of 44 cases$' out || fail "the numpy renderer: $(cat out)"
   shows 'L1-solid' 'F(0.99)' 'F(0.999)'
-  shows 'L1-solid' 'np.maximum(np.stack(channels, 1), 0.0)' 'np.stack(channels, 1)'
-  shows 'L1-harmonics L2-off-center L2-background' '{c * n_rest + k}' '{3 * k + c}'
-  shows 'L2-overlap L2-faint L2-off-center L2-background' 'np.argsort(z.astype(F), kind="stable")' 'range(len(z))'
-  shows 'L2-overlap' 'np.argsort(z' 'np.argsort((p * p).sum(1)'
+  shows 'L1-solid L1-band-1 L2-rolled L2-upside-down' 'np.maximum(np.stack(channels, 1), 0.0)' 'np.stack(channels, 1)'
+  shows 'L1-harmonics L2-off-center L2-background L1-band-1 L1-band-2 L1-band-3 L2-rolled L2-upside-down' '{c * n_rest + k}' '{3 * k + c}'
+  shows 'L2-overlap L2-faint L2-off-center L2-background L1-point L2-most L2-bright L2-rolled L2-upside-down L2-one-pixel L2-column L2-two-tiles L2-zoomed L2-wide L2-cropped' \
+    'np.argsort(z.astype(F), kind="stable")' 'range(len(z))'
+  shows 'L2-overlap L2-most L2-column L2-two-tiles L2-wide L2-cropped' 'np.argsort(z' 'np.argsort((p * p).sum(1)'
   shows 'L2-off-center' '-fy * slope_y' '-fx * slope_y'
-  shows 'L2-background' 'T[..., None] * np' '0 * T[..., None] * np'
+  shows 'L2-background L1-empty' 'T[..., None] * np' '0 * T[..., None] * np'
   shows 'L2-faint' 'F(1e-4)' 'F(-1)'
 else
   echo "not drawn by the numpy renderer: python3-numpy is not installed"
@@ -61,10 +62,10 @@ run 0 render suite/scenes/ball.ply --camera suite/cameras/ball.json --profile gs
 touch some/L9-nothing.png
 judged 1 some --json some.json
 grep -q 'no case has the name of L9-nothing.png' err || fail "no note on what is no case's: $(cat err)"
-grep -A2 '"total"' some.json | grep -q '"cases": 19' || fail "not all cases are counted"
-grep -q '"missing": 18' some.json || fail "not 18 are missing: $(head -c 400 some.json)"
+grep -A2 '"total"' some.json | grep -q '"cases": 44' || fail "not all cases are counted"
+grep -q '"missing": 43' some.json || fail "not 43 are missing: $(head -c 400 some.json)"
 judged 1 some --level 1
-grep -q '^ *1 *4 *1 *0 *3 ' out || fail "of level 1 not one is right: $(cat out)"
+grep -q '^ *1 *14 *1 *0 *13 ' out || fail "of level 1 not one is right: $(cat out)"
 rm $ball.png
 # wrong MESSAGE: the ball is wrong, for that reason.
 wrong() {
@@ -74,8 +75,8 @@ wrong() {
   if [[ -n $numpy ]]; then
     "$numpy" -c 'import xml.etree.ElementTree as xml
 found = xml.parse("some.xml").getroot()
-assert found.get("tests") == "4" and found.get("failures") == "4", found.attrib
-assert len(found.findall("testsuite/testcase/failure")) == 4' || fail "JUnit's XML is not as it should be"
+assert found.get("tests") == found.get("failures") == "14", found.attrib
+assert len(found.findall("testsuite/testcase/failure")) == 14' || fail "JUnit's XML is not as it should be"
   fi
 }
 run 0 render suite/scenes/ball.ply --camera suite/cameras/ball.json --profile gsplat-1.6 --size 37x20 -o $ball.pfm
@@ -84,7 +85,7 @@ head -c 100 own/L1-ball-gsplat-1.6.pfm > $ball.pfm
 wrong 'its picture cannot be read'
 printf 'PF\n36 20\n-1\n' > $ball.pfm
 for _ in {1..2160}; do printf '\0\0\300\177'; done >> $ball.pfm
-wrong '720 of 720 pixels are wrong; at 0,0 R is nan'
+wrong 'projection: 720 of 720 pixels are wrong; at 0,0 R is nan'
 judged 0 own --level 1 --max-wrong 1
 cp own/L2-overlap-gsplat-1.6.pfm own/L2-faint-gsplat-1.6.pfm
 judged 1 own --level 2

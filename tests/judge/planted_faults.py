@@ -1,10 +1,13 @@
 """Plants faults in examples/conformance/numpy-renderer.py and counts what conic judge says of each.
 
     python3 planted_faults.py SOURCE CONIC [SCENES [FAULT …]]
+    python3 planted_faults.py SOURCE CONIC suite [CASE,… [FAULT …]]
 
 A fault is a change of the renderer's text, or of its finished picture. For each: what may be said of it, by name or by
 the kind of place; "" means that nothing need be said. A name besides these is a wrong name, and that is an error; of
-faults that are asked for by name, so is silence where something may be said."""
+faults that are asked for by name, so is silence where something may be said.
+
+With "suite" each fault is drawn into the cases of a conformance suite, and one by which no case is wrong is an error."""
 
 import json
 import os
@@ -67,6 +70,17 @@ IN_TEXT = {
     "batches-dropped": ("", [("z.astype(F), kind=\"stable\")", "z.astype(F), kind=\"stable\")[:64]")]),
     "one-dropped": ("", [("z.astype(F), kind=\"stable\")", "z.astype(F), kind=\"stable\")[np.arange(len(z)) != 70]")]),
     "opacity-linear": ("opacity-linear", [("(1.0 / (1.0 + np.exp(-ply[\"opacity\"])))", "np.clip(ply[\"opacity\"], 0, 1)")]),
+    "over-16-tiles-dropped": ("", [("        if z[i] < 0.01:", "        r = 3.33 * np.sqrt(np.diag(covariance[i]))\n"
+                                   "        tiles = [-(-width // 16), -(-height // 16)]\n"
+                                   "        across = np.clip(np.ceil((center[i] + r) / 16), 0, tiles) - np.clip("
+                                   "np.floor((center[i] - r) / 16), 0, tiles)\n"
+                                   "        if z[i] < 0.01 or across.prod() > 16:")]),
+    "clamped-about-middle": ("", [("-(cx + 0.15 * width) / fx, (width - cx + 0.15 * width) / fx",
+                                   "-0.65 * width / fx, 0.65 * width / fx"),
+                                  ("-(cy + 0.15 * height) / fy, (height - cy + 0.15 * height) / fy",
+                                   "-0.65 * height / fy, 0.65 * height / fy")]),
+    "not-clamped": ("", [("np.clip(x / z_safe,", "np.maximum(np.minimum(x / z_safe, 1e9), -1e9) + 0 * np.clip(x,"),
+                         ("np.clip(y / z_safe,", "np.maximum(np.minimum(y / z_safe, 1e9), -1e9) + 0 * np.clip(y,")]),
     "compensated": ("gsplat-1.6-aa gsplat-1.5-aa", [("opacities = (1.0", "opacities0 = (1.0"), ("conic = np.linalg.inv", "opacities = (opacities0 * np.sqrt(np.maximum(0, np.linalg.det(covariance - 0.3 * np.eye(2)) / np.linalg.det(covariance)))).astype(F)\n    conic = np.linalg.inv")]),
 }
 
@@ -105,6 +119,12 @@ def checkers(rgba, _):
     rgba[1::2, 1::2] = 0
 
 
+def tiles_from_100(rgba, depth):
+    y, x = np.mgrid[:rgba.shape[0], :rgba.shape[1]]
+    beyond = y // 16 * -(-rgba.shape[1] // 16) + x // 16 >= 100
+    rgba[beyond] = depth[beyond] = 0
+
+
 def srgb(x):
     x = np.maximum(x, 0)
     return np.where(x <= 0.04045, x / 12.92, ((x + 0.055) / 1.055) ** 2.4)
@@ -116,6 +136,7 @@ IN_PICTURE = {
     "black-tile-8": ("tile", edit(lambda p, z: at_tile(p, 8))),
     "garbage-tile-16": ("tile", edit(lambda p, z: at_tile(p, 16, 0.37))),
     "last-row-of-tiles": ("row border half", edit(last_row)),
+    "tiles-from-100-dropped": ("", edit(tiles_from_100)),
     "last-column": ("border column", edit(lambda p, z: p.__setitem__((slice(None), slice(-1, None)), 0.0))),
     "lower-half": ("half", edit(lambda p, z: p.__setitem__(slice(p.shape[0] // 2, None), 0.0))),
     "every-third": ("every", edit(every_third)),
@@ -188,7 +209,60 @@ def judged(conic, work, camera, rgba, depth):
     return json.loads(got.stdout)
 
 
+def is_wrong(suite, case, scene, rgba, depth):
+    """As the suite's README has it."""
+    _, _, _, least, most = np.load(f"{suite}/{case['npy']}")
+    step = scene.get("step", 1)
+    values = np.concatenate((rgba, depth[..., None]), 2)[step // 2::step, step // 2::step]
+    wrong = ~((values >= least) & (values <= most))
+    if any(scene["background"]):
+        wrong[..., 3] &= values[..., 3] != 1
+    return wrong.any()
+
+
+def turned(camera):
+    a = 0.02
+    turn = np.array([[np.cos(a), 0, np.sin(a), 0], [0, 1, 0, 0], [-np.sin(a), 0, np.cos(a), 0], [0, 0, 0, 1]])
+    return {**camera, "world_to_camera": (turn @ np.array(camera["world_to_camera"])).tolist()}
+
+
+def fails(source, suite, cases, scenes, how):
+    """The first case that is wrong with a fault; None."""
+    module = renderer(source, how if isinstance(how, list) else [])
+    for case in cases:
+        scene = scenes[case["scene"]]
+        camera = json.load(open(f"{suite}/{scene['camera']['conic']}"))
+        ply = module.read_ply(f"{suite}/{scene['files']['ply']}")
+        rgba, depth = module.draw(ply, turned(camera) if how is None else camera, scene["background"])
+        try:
+            rgba, depth = how(rgba, depth) if callable(how) else (rgba, depth)
+        except (IndexError, ValueError):  # the picture is too small for it
+            continue
+        if is_wrong(suite, case, scene, rgba, depth):
+            return case["name"]
+    return None
+
+
+def in_suite(source, conic, names="", *only):
+    n_unseen = 0
+    with tempfile.TemporaryDirectory() as suite, np.errstate(all="ignore"):
+        subprocess.run([conic, "conformance", suite, "--profile", "gsplat-1.6", "--quiet"], check=True)
+        manifest = json.load(open(suite + "/manifest.json"))
+        scenes = {scene["name"]: scene for scene in manifest["scenes"]}
+        cases = [case for case in manifest["cases"] if not names or case["scene"] in names.split(",")]
+        cases.sort(key=lambda case: scenes[case["scene"]]["width"] * scenes[case["scene"]]["height"] *
+                   scenes[case["scene"]]["records"])
+        for name, (_, how) in {**IN_TEXT, **IN_PICTURE}.items():
+            if not only or name in only:
+                found = fails(source, suite, cases, scenes, how)
+                n_unseen += (found is None) != (name == "right")
+                print(f"{name:24} {found}", flush=True)
+    return n_unseen > 0
+
+
 def main(source, conic, scenes="5", *only):
+    if scenes == "suite":
+        return in_suite(source, conic, *only)
     n_silent = 0
     counts = {"rightly": 0, "wrong": 0, "none": 0, "unseen": 0}
     seconds = 0.0
