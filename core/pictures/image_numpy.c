@@ -140,8 +140,8 @@ static conic_status put_numpy_name(const conic_zip *zip, const numpy_name *about
 
 static conic_status read_named_arrays(conic_context *context, const char *path, const conic_mapping *file,
                                       conic_image *image, unsigned *most_code) {
-  static const char *const colors[] = {"rgba", "rgb", "image", "colors", "render", "renders"};
-  static const char *const alphas[] = {"A", "alpha", "alphas"};
+  static const char *const colors[] = {"rgba", "rgb", "render_colors", "image", "colors", "render", "renders"};
+  static const char *const alphas[] = {"A", "alpha", "render_alphas", "alphas"};
   conic_zip zip;
   conic_status status = conic_zip_open(context, path, file->bytes, file->n_bytes, &zip);
   for (size_t i = 0; i < sizeof colors / sizeof *colors && status == CONIC_OK; i++)

@@ -5,7 +5,7 @@ set -uo pipefail
 source "$1/tests/support/program.bash"
 
 run 0 conformance one --profile gsplat-1.6,2dgs-gsplat --level 6 --threads 1 --json -
-grep -q '"cases": 82' out || fail "not 82 cases: $(head -c 300 out)"
+grep -q '"cases": 83' out || fail "not 83 cases: $(head -c 300 out)"
 run 0 conformance several/ --profile 2dgs-gsplat,gsplat-1.6 --level 6 --threads 3
 diff -r one several > out || fail "other bytes with other threads: $(head -3 out)"
 
@@ -15,7 +15,7 @@ sed -n 's/^ *"sha256": "\(.*\)"$/\1/p' one/manifest.json | paste -d ' ' - paths 
 (cd one && sha256sum --quiet --strict -c ../sums) || fail "hashes"
 (cd one && find . -type f ! -name manifest.json | sed 's/^\.\///' | sort) | diff - <(sort paths) > out ||
   fail "the list of files: $(head -3 out)"
-[[ $(wc -l < one/cases.tsv) == 82 ]] || fail "the list of cases"
+[[ $(wc -l < one/cases.tsv) == 83 ]] || fail "the list of cases"
 
 # The manifest is as its schema says; and a manifest that is not would be seen.
 python=

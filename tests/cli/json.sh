@@ -223,7 +223,7 @@ write judge-gradients-wrong judge_gradients judge two.splat --profile gsplat-1.6
   --gradients two-g.ply
 write project project project two.splat --profile gsplat-1.6 --size 40x40 -o two.npz
 write judge-intermediates judge_intermediates judge two.splat --profile gsplat-1.6 --size 40x40 --intermediates two.npz
-write judge-intermediates-wrong judge_intermediates judge two.splat --profile gsplat-1.6 --size 40x41 \
+write judge-intermediates-wrong judge_intermediates judge two.splat --profile gsplat-1.6 --size 40x70 \
   --intermediates two.npz
 write explain-splat explain explain one.ply --size 64x48 --splat 0
 write explain-octree explain explain knot.cot --size 64x48 --error 1 --splat 9 --pixel 32,24
