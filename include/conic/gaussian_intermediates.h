@@ -38,8 +38,8 @@ typedef struct conic_gaussian_intermediates {
   int tile_width, tile_height; /* tiles of 16 × 16 pixels; 0: the profile has none */
   size_t n_isects;             /* entries of tiles' lists, by the values in double, in their order: */
   int64_t *isect_ids;          /* the tile's number << 32 | the depth's bits as a float */
-  int32_t *flatten_ids;        /* the Gaussian */
-  int32_t *isect_offsets;      /* where each tile's entries begin */
+  int64_t *flatten_ids;        /* the Gaussian */
+  int64_t *isect_offsets;      /* where each tile's entries begin */
   uint64_t reserved[4];
 } conic_gaussian_intermediates;
 
@@ -89,7 +89,6 @@ typedef struct conic_judged_array {
 typedef struct conic_intermediates_verdict {
   conic_judged_array arrays[CONIC_MAX_JUDGED_ARRAYS]; /* those that are there, by stages */
   int n_arrays;
-  int first_wrong; /* the first of them that is wrong; -1: none */
   uint64_t reserved[4];
 } conic_intermediates_verdict;
 

@@ -28,29 +28,17 @@ static void put_range(const conic_intermediate_array *a, size_t i, int column, o
   a->high[at] = r.high;
 }
 
-/* How many tiles list it; its entries, if there is room for them. */
-static size_t list_tiles(const projecting *j, const oracle_projected *p, list_entry *entries) {
-  const oracle_doubting *d = &j->e->bounding.doubting;
-  const uint32_t depth = conic_bits_of_float((float)p->g.z.v);
-  size_t n = 0;
-  for (int y = (int)p->first[1].v; y < (int)p->behind[1].v; y++)
-    for (int x = (int)p->first[0].v; x < (int)p->behind[0].v; x++)
-      if (conic_oracle_lists(d, p, j->is_by_ellipse, x, y)) {
-        if (entries)
-          entries[n] = (list_entry){(uint64_t)(y * j->to->tile_width + x) << 32 | depth, p->g.index};
-        n++;
-      }
-  return n;
-}
-
+/* How many tiles list it: in double, and at least and at most. */
 static oracle_range count_tiles(const projecting *j, const oracle_projected *p) {
-  size_t n_least = 0, n_most = 0;
+  const oracle_doubting *d = &j->e->bounding.doubting;
+  oracle_range n = {0.0, 0.0, 0.0};
   for (int y = (int)p->first[1].low; y < (int)p->behind[1].high; y++)
     for (int x = (int)p->first[0].low; x < (int)p->behind[0].high; x++) {
-      n_most += conic_oracle_may_list(p, x, y) != 0;
-      n_least += conic_oracle_has_to_list(&j->e->bounding.doubting, p, x, y) != 0;
+      n.v += conic_oracle_lists(d, p, j->is_by_ellipse, x, y) != 0;
+      n.low += conic_oracle_has_to_list(d, p, x, y) != 0;
+      n.high += conic_oracle_may_list(p, x, y) != 0;
     }
-  return (oracle_range){(double)list_tiles(j, p, NULL), (double)n_least, (double)n_most};
+  return n;
 }
 
 static void project_run(void *data, size_t i_run) {
@@ -74,11 +62,16 @@ static void project_run(void *data, size_t i_run) {
 static void list_run(void *data, size_t i_run) {
   const projecting *j = data;
   for (size_t i = i_run * A_RUN; i < (i_run + 1) * A_RUN && i < j->to->count; i++) {
+    list_entry *entry = &j->entries[j->begin[i]];
     oracle_projected p;
     if (j->begin[i] == j->begin[i + 1])
       continue;
     conic_oracle_project(&j->e->bounding.doubting, i, &p);
-    list_tiles(j, &p, &j->entries[j->begin[i]]);
+    const uint32_t depth = conic_bits_of_float((float)p.g.z.v);
+    for (int y = (int)p.first[1].v; y < (int)p.behind[1].v; y++)
+      for (int x = (int)p.first[0].v; x < (int)p.behind[0].v; x++)
+        if (conic_oracle_lists(&j->e->bounding.doubting, &p, j->is_by_ellipse, x, y))
+          *entry++ = (list_entry){(uint64_t)(y * j->to->tile_width + x) << 32 | depth, (uint32_t)i};
   }
 }
 
@@ -101,8 +94,6 @@ static conic_status make_lists(projecting *j) {
   for (size_t i = 0; j->begin && i < to->count; i++)
     j->begin[i + 1] = j->begin[i] + (size_t)to->arrays[CONIC_INTERMEDIATE_TILES_PER_GAUSS].value[i];
   const size_t n = j->begin ? j->begin[to->count] : 0;
-  if (n > INT32_MAX)
-    return conic_fail(context, CONIC_ERROR_MEMORY, "project: more than 2147483647 entries of tiles' lists");
   conic_status status =
       conic_memory_allocate_these(context, CONIC_ROOM(j->entries, n), CONIC_ROOM(to->isect_ids, n),
                                   CONIC_ROOM(to->flatten_ids, n), CONIC_ROOM(to->isect_offsets, n_tiles));
@@ -113,12 +104,12 @@ static conic_status make_lists(projecting *j) {
     return status;
   qsort(j->entries, n, sizeof *j->entries, compare_entries);
   to->n_isects = n;
-  for (size_t k = 0, tile = 0; tile < n_tiles; to->isect_offsets[tile++] = (int32_t)k)
+  for (size_t k = 0, tile = 0; tile < n_tiles; to->isect_offsets[tile++] = (int64_t)k)
     while (k < n && j->entries[k].id >> 32 < tile)
       k++;
   for (size_t k = 0; k < n; k++) {
     to->isect_ids[k] = (int64_t)j->entries[k].id;
-    to->flatten_ids[k] = (int32_t)j->entries[k].gaussian;
+    to->flatten_ids[k] = j->entries[k].gaussian;
   }
   return CONIC_OK;
 }

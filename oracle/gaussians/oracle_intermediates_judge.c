@@ -420,7 +420,6 @@ static conic_status read_given(intermediates_judging *j) {
 }
 
 static void tell_verdict(const intermediates_judging *j, conic_intermediates_verdict *verdict) {
-  verdict->first_wrong = -1;
   for (int name = 0; name < N_GIVEN; name++) {
     conic_judged_array *to = &verdict->arrays[verdict->n_arrays];
     if (!j->verdicts[name].judged && !j->verdicts[name].wrong)
@@ -428,8 +427,6 @@ static void tell_verdict(const intermediates_judging *j, conic_intermediates_ver
     *to = j->verdicts[name];
     to->name = about[name].name;
     to->stage = about[name].stage;
-    if (to->wrong && verdict->first_wrong < 0)
-      verdict->first_wrong = verdict->n_arrays;
     verdict->n_arrays++;
   }
 }
