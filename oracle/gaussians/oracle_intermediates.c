@@ -13,13 +13,13 @@ typedef struct list_entry {
   uint32_t gaussian;
 } list_entry;
 
-typedef struct projecting {
+typedef struct intermediates_finding {
   oracle_entry *e;
   conic_gaussian_intermediates *to;
   int is_by_ellipse; /* its tiles are those that its ellipse meets, not its box */
   size_t *begin;     /* of each Gaussian's entries, count + 1 of them */
   list_entry *entries;
-} projecting;
+} intermediates_finding;
 
 static void put_range(const conic_intermediate_array *a, size_t i, int column, oracle_range r) {
   const size_t at = i * (size_t)a->n_columns + (size_t)column;
@@ -29,7 +29,7 @@ static void put_range(const conic_intermediate_array *a, size_t i, int column, o
 }
 
 /* How many tiles list it: in double, and at least and at most. */
-static oracle_range count_tiles(const projecting *j, const oracle_projected *p) {
+static oracle_range count_tiles(const intermediates_finding *j, const oracle_projected *p) {
   const oracle_doubting *d = &j->e->bounding.doubting;
   oracle_range n = {0.0, 0.0, 0.0};
   for (int y = (int)p->first[1].low; y < (int)p->behind[1].high; y++)
@@ -42,7 +42,7 @@ static oracle_range count_tiles(const projecting *j, const oracle_projected *p) 
 }
 
 static void project_run(void *data, size_t i_run) {
-  const projecting *j = data;
+  const intermediates_finding *j = data;
   for (size_t i = i_run * A_RUN; i < (i_run + 1) * A_RUN && i < j->to->count; i++) {
     oracle_projected p;
     conic_oracle_project(&j->e->bounding.doubting, i, &p);
@@ -60,7 +60,7 @@ static void project_run(void *data, size_t i_run) {
 /* --- lists --- */
 
 static void list_run(void *data, size_t i_run) {
-  const projecting *j = data;
+  const intermediates_finding *j = data;
   for (size_t i = i_run * A_RUN; i < (i_run + 1) * A_RUN && i < j->to->count; i++) {
     list_entry *entry = &j->entries[j->begin[i]];
     oracle_projected p;
@@ -80,11 +80,11 @@ static int compare_entries(const void *a, const void *b) {
   return x->id != y->id ? (x->id > y->id ? 1 : -1) : (x->gaussian > y->gaussian) - (x->gaussian < y->gaussian);
 }
 
-static size_t n_runs_of(const projecting *j) {
+static size_t n_runs_of(const intermediates_finding *j) {
   return (j->to->count + A_RUN - 1) / A_RUN;
 }
 
-static conic_status make_lists(projecting *j) {
+static conic_status make_lists(intermediates_finding *j) {
   conic_context *context = j->e->bounding.context;
   conic_gaussian_intermediates *to = j->to;
   const size_t n_tiles = (size_t)to->tile_width * (size_t)to->tile_height;
@@ -135,7 +135,7 @@ static oracle_range find_transmittance(const oracle_meeting *meetings, size_t n,
 }
 
 static void note_transmittances(void *data, size_t pixel, const oracle_meeting *meetings, size_t n, int i_thread) {
-  const projecting *j = data;
+  const intermediates_finding *j = data;
   const double x = (double)(pixel % (size_t)j->e->bounding.width) + 0.5;
   const double y = (double)(pixel / (size_t)j->e->bounding.width) + 0.5;
   (void)i_thread;
@@ -150,7 +150,7 @@ static void forget_bound(void *data, size_t i, size_t pixel, const conic_gaussia
 }
 
 /* At the pixels that hold a mean. */
-static conic_status find_transmittances(projecting *j) {
+static conic_status find_transmittances(intermediates_finding *j) {
   oracle_bound_request *b = &j->e->bounding;
   const double *place = j->to->arrays[CONIC_INTERMEDIATE_MEANS2D].value;
   const size_t whole = b->n_pixels;
@@ -202,7 +202,7 @@ conic_status conic_gaussian_intermediates_find(conic_context *context, const con
   conic_status status = conic_oracle_enter(context, gaussians, camera, options, model ? model : &fast, 1, &e);
   if (status != CONIC_OK)
     return status;
-  projecting j = {.e = &e, .to = found};
+  intermediates_finding j = {.e = &e, .to = found};
   j.is_by_ellipse = e.options.profile == CONIC_PROFILE_GSPLAT_1_6 || e.options.profile == CONIC_PROFILE_GSPLAT_1_6_AA;
   status = make_room(context, &e, gaussians->count, found);
   if (status == CONIC_OK)

@@ -19,6 +19,7 @@ grep -q "^right: $(wc -l < suite/cases.tsv) of " out || fail "not all cases are 
 rm -rf pictures
 mkdir pictures
 while IFS=$'\t' read -r name scene camera profile background; do
+  [[ $name != L7-* ]] || continue # which takes them long
   case $profile in
     exact | inria-2023-aa | mip-2023 | brush-1 | splat-2023 | playcanvas-2 | spark-2 | gs3d-0.4) continue ;;
     surface) renderer=("$3/tests/plain_splats") ;;
@@ -28,7 +29,7 @@ while IFS=$'\t' read -r name scene camera profile background; do
     fail "$name is not drawn"
 done < suite/cases.tsv
 profiles=$(cut -f 4 suite/cases.tsv | sort -u | grep -v '^exact$\|-2023-aa$\|^mip-\|^brush-\|^splat-\|^playcanvas-\|^spark-\|^gs3d-' | paste -sd ,)
-run 1 judge --suite suite --pictures pictures --profile "$profiles"
+run 1 judge --suite suite --pictures pictures --profile "$profiles" --level 6
 cat out
 [[ $(grep -c '^wrong    L5-broken-\|^wrong    L6-steep-' out) -eq $(grep -c '^wrong ' out) ]] || fail "the plain renderers"
 grep -q '^missing' out && fail "pictures are missing"
