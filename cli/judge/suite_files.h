@@ -6,7 +6,7 @@
 
 extern const char cli_suite_readme[]; /* its README.md */
 
-enum { SUITE_PATH_ROOM = 96, SUITE_MOST_FILES = 1024 };
+enum { SUITE_PATH_ROOM = 96, SUITE_MOST_FILES = 2048 };
 
 typedef struct suite_file {
   char path[SUITE_PATH_ROOM]; /* within the suite */

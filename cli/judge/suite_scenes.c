@@ -443,7 +443,7 @@ static conic_status make_steep(conic_context *context, conic_splats *splats) {
 /* How a scene is seen: small pictures that are not square, and whose sides are no multiples of a tile. */
 #define SMALL .width = 36, .height = 20, .center = {18.0, 10.0}
 #define TINY .width = 20, .height = 12, .center = {10.0, 6.0}
-#define LARGE .width = 640, .height = 360, .center = {320.0, 180.0}, .step = 13
+#define LARGE .width = 640, .height = 360, .center = {320.0, 180.0}, .step = 15
 #define MIDDLE .width = 50, .height = 38, .center = {25.0, 19.0}
 #define AHEAD .rotation = {1.0, 0.0, 0.0, 0.0}, .eye = {0.0, 0.0, -4.0}, .focal = {32.0, 32.0}
 #define AT_ORIGIN .rotation = {1.0, 0.0, 0.0, 0.0}, .focal = {32.0, 32.0}
@@ -490,11 +490,11 @@ const suite_scene cli_suite_scenes[] = {
      .drawn_by = SOLIDS, .make = make_extremes},
 
     {"least", "opacities about 1/255, each over a pixel's centre", 5, SMALL, AHEAD, .stage = CONIC_GAUSSIAN_STAGE_ALPHA,
-     .drawn_by = BLURRED, .make = make_least},
+     .drawn_by = SOLIDS, .make = make_least},
     {"end", "piles by which T comes to about 1e-4", 5, SMALL, AHEAD, .stage = CONIC_GAUSSIAN_STAGE_BLENDING,
      .drawn_by = BLURRED, .make = make_end},
     {"ties", "equal depths, and depths apart by less than a float tells", 5, SMALL, AHEAD,
-     .stage = CONIC_GAUSSIAN_STAGE_SORT, .drawn_by = BLURRED | DISCS, .make = make_ties},
+     .stage = CONIC_GAUSSIAN_STAGE_SORT, .drawn_by = SOLIDS | DISCS, .make = make_ties},
     {"quaternions", "quaternions of lengths from 0.01 to 1000", 5, SMALL, AHEAD, .drawn_by = SOLIDS | DISCS,
      .make = make_quaternions},
     {"broken", "records with NaN, with infinity or without a rotation, which are left out, among sound ones", 5, SMALL,
@@ -502,9 +502,9 @@ const suite_scene cli_suite_scenes[] = {
     {"far-away", "a scene and its camera 1,100 from the origin, where floats are coarse", 5, SMALL,
      .rotation = {1.0, 0.0, 0.0, 0.0}, .focal = {32.0, 32.0}, .eye = {600.0, -350.0, 896.0},
      .drawn_by = BLURRED | DISCS, .make = make_far_away},
-    {"near", "means at the near planes 0.2 and 0.01, before and behind them", 5, SMALL, AT_ORIGIN, .drawn_by = BLURRED,
+    {"near", "means at the near planes 0.2 and 0.01, before and behind them", 5, SMALL, AT_ORIGIN, .drawn_by = SOLIDS,
      .make = make_near},
-    {"aside", "large ones beside the picture, whose slopes are clamped", 5, SMALL, AHEAD, .drawn_by = BLURRED,
+    {"aside", "large ones beside the picture, whose slopes are clamped", 5, SMALL, AHEAD, .drawn_by = SOLIDS,
      .make = make_aside},
     {"edge-on", "2D Gaussians seen from the edge, and nearly", 5, SMALL, AHEAD, .drawn_by = DISCS,
      .make = make_edge_on},
@@ -568,18 +568,18 @@ const suite_scene cli_suite_scenes[] = {
      .recipe = {40, .spread = {1.5, 1.0, 2.0}, .size = {0.2, 0.1, 0.1}, OPAQUE}},
 
     {"vast", "640 x 360 pixels, 920 tiles", 7, LARGE, AS_IT_IS, .eye = {0.0, 0.0, -4.0}, .focal = {500.0, 500.0},
-     EVERYWHERE, STAGE(SORT),
+     EVERYWHERE | SUITE_WITH_TILES, STAGE(SORT),
      .recipe = {1500, .spread = {2.8, 1.6, 1.5}, .size = {0.12, 0.06, 0.06}, OPAQUE, .bands = 2}},
     {"cover", "a few that cover hundreds of tiles each", 7, LARGE, AS_IT_IS, .eye = {0.0, 0.0, -4.0},
-     .focal = {500.0, 500.0}, EVERYWHERE, STAGE(SORT),
+     .focal = {500.0, 500.0}, EVERYWHERE | SUITE_WITH_TILES, STAGE(SORT),
      .recipe = {7, .spread = {1.5, 1.0, 1.0}, .size = {1.2, 0.6, 0.4}, .opacity = {0.3, 0.8}}},
-    {"vast-off-center", "640 x 360 pixels of an off-centre camera", 7, 640, 360, .center = {95.0, 300.0}, .step = 13,
-     AS_IT_IS, .eye = {0.0, 0.0, -4.0}, .focal = {450.0, 480.0}, FREE_CENTER,
+    {"vast-off-center", "640 x 360 pixels of an off-centre camera", 7, 640, 360, .center = {95.0, 300.0}, .step = 15,
+     AS_IT_IS, .eye = {0.0, 0.0, -4.0}, .focal = {450.0, 480.0}, FREE_CENTER | SUITE_WITH_TILES,
      .recipe = {150, {2.0, -0.8, -1.0}, {5.0, 3.5, 2.0}, {0.5, 0.25, 0.2}, .opacity = {0.2, 0.6}}},
     {"crowded-pixel", "10,000 on one pixel", 7, TINY, AHEAD, EVERYWHERE, STAGE(BLENDING),
      .recipe = {10000, {0.06, 0.06, 0.0}, {0.03, 0.03, 0.5}, {0.01, 0.01, 0.01}, .opacity = {0.003, 0.01}}},
     {"crowded-tile", "300,000 in one tile", 7, 16, 16, .center = {8.0, 8.0}, AHEAD,
-     .drawn_by = SUITE_OF_ELLIPSES | SUITE_WITH_NEAR, STAGE(SORT),
+     .drawn_by = SUITE_OF_ELLIPSES | SUITE_WITH_TILES, STAGE(SORT),
      .recipe = {300000, .spread = {0.9, 0.9, 1.0}, .size = {0.04, 0.02, 0.02}, .opacity = {0.00395, 0.0045}}},
 
     {"splat", "one surface splat, tilted", 6, SMALL, AHEAD, .drawn_by = SUITE_OF_SURFELS, .make_splats = make_splat},
@@ -609,11 +609,14 @@ static int draws(const suite_scene *scene, int profile) {
     return scene->drawn_by & SUITE_OF_SURFELS;
   const conic_profile_row *row = conic_profile_row_of((conic_gaussian_profile)profile);
   const int is_fainter = row->compensation_least >= 0.0 && row->dilation > 0.0;
+  const int lacks_tiles =
+      row->shape == CONIC_SHAPE_ELLIPSE && row->coverage != CONIC_COVERAGE_TILES && !row->is_beyond_stop;
   const unsigned of = row->shape == CONIC_SHAPE_RAY    ? SUITE_OF_RAYS
                       : row->shape == CONIC_SHAPE_DISC ? SUITE_OF_DISCS
                       : is_fainter                     ? SUITE_OF_FAINTER_ELLIPSES
                                                        : SUITE_OF_ELLIPSES;
-  return scene->drawn_by & of && !(scene->drawn_by & SUITE_WITH_CENTER && row->takes_middle) &&
+  return scene->drawn_by & of && !(scene->drawn_by & SUITE_WITH_TILES && lacks_tiles) &&
+         !(scene->drawn_by & SUITE_WITH_CENTER && row->takes_middle) &&
          !(scene->drawn_by & SUITE_WITH_NEAR && row->shape == CONIC_SHAPE_ELLIPSE && !(row->near_z > 0.0));
 }
 

@@ -25,7 +25,8 @@ enum {
   SUITE_OF_DISCS = 8,
   SUITE_OF_SURFELS = 16,
   SUITE_WITH_CENTER = 32, /* the camera's own principal point */
-  SUITE_WITH_NEAR = 64    /* a near plane */
+  SUITE_WITH_NEAR = 64,   /* a near plane */
+  SUITE_WITH_TILES = 128  /* lists of tiles */
 };
 
 /* Gaussians by chance: n of them about a place, of a size, an opacity and bands of harmonics. */

@@ -595,7 +595,8 @@ def judge(
         ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
         from a corner
     azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
-    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat]
+    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat, and
+        surveys]
     fov: field of view across the shorter side [40]
     zoom: multiplies the focal length: 2 shows the middle, twice as large [1]
     projection: perspective, orthographic (parallel), fisheye, panorama (all around) or cube (six sides, one
@@ -617,6 +618,8 @@ def judge(
         percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
+    place: where an input stands: a shift of 3 numbers, or 12 or 16 of a matrix, row by row, that turns, scales
+        evenly and shifts [as the file has it]
     error: draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a
         .chy, also by how many steps colours may differ: black and white do by 100, and 2 are just visible [0:2]
     budget: draw N splats and triangles at most, those whose error is the least [all]
@@ -628,9 +631,10 @@ def judge(
         the points, with patch:D by polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the
         length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
-        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque
-        splats; inria-2023 and 2dgs-2024 with :ignore-center behind them take the picture's middle for the
-        camera's principal point, as these do [exact]
+        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026, inria-2023-aa, mip-2023,
+        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
+        others that take the picture's middle for the camera's principal point do so with any camera where
+        :ignore-center stands behind them [exact]
     quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
         --samples go first [good]
     kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N
@@ -706,13 +710,15 @@ def project(
     color_by: Optional[PathLike] = None,
     ramp: Optional[Union[str, float, Sequence[float]]] = None,
     where: Optional[PathLike] = None,
+    place: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     error: Optional[float] = None,
     budget: Optional[Union[int, str]] = None,
     cache: Optional[PathLike] = None,
     only: Optional[Literal["triangles", "surfels"]] = None,
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
-        "2dgs-2024", "2dgs-gsplat", "khr-2026", "surface"]] = None,
+        "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
+        "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
     quality: Optional[Literal["draft", "good", "final"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
@@ -755,7 +761,8 @@ def project(
         ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
         from a corner
     azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
-    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat]
+    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat, and
+        surveys]
     fov: field of view across the shorter side [40]
     zoom: multiplies the focal length: 2 shows the middle, twice as large [1]
     projection: perspective, orthographic (parallel), fisheye, panorama (all around) or cube (six sides, one
@@ -777,6 +784,8 @@ def project(
         percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
+    place: where an input stands: a shift of 3 numbers, or 12 or 16 of a matrix, row by row, that turns, scales
+        evenly and shifts [as the file has it]
     error: draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a
         .chy, also by how many steps colours may differ: black and white do by 100, and 2 are just visible [0:2]
     budget: draw N splats and triangles at most, those whose error is the least [all]
@@ -788,9 +797,10 @@ def project(
         the points, with patch:D by polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the
         length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
-        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque
-        splats; inria-2023 and 2dgs-2024 with :ignore-center behind them take the picture's middle for the
-        camera's principal point, as these do [exact]
+        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026, inria-2023-aa, mip-2023,
+        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
+        others that take the picture's middle for the camera's principal point do so with any camera where
+        :ignore-center stands behind them [exact]
     quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
         --samples go first [good]
     kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N
@@ -887,13 +897,15 @@ def judge_intermediates(
     color_by: Optional[PathLike] = None,
     ramp: Optional[Union[str, float, Sequence[float]]] = None,
     where: Optional[PathLike] = None,
+    place: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     error: Optional[float] = None,
     budget: Optional[Union[int, str]] = None,
     cache: Optional[PathLike] = None,
     only: Optional[Literal["triangles", "surfels"]] = None,
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
-        "2dgs-2024", "2dgs-gsplat", "khr-2026", "surface"]] = None,
+        "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
+        "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
     quality: Optional[Literal["draft", "good", "final"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,

@@ -70,7 +70,7 @@ for format in spz glb; do
   run 0 diff ply.pfm b.pfm --max-abs 1e-6
 done
 if "$conic" --version | grep -q '^In this build:.*OpenEXR'; then
-  run 0 info one/expected/L3-room-gsplat-1.6.exr
+  run 0 info one/expected/L1-ball-gsplat-1.6.exr
   grep -q 'rgba, Z' out || fail "an EXR of other planes: $(cat out)"
 fi
 
