@@ -3,6 +3,7 @@
 #include "cli/render/kept_frames.h"
 #include "cli/render/sample_options.h"
 #include "cli/render/shot_again.h"
+#include "cli/scene/light_options.h"
 #include "cli/scene/stereo.h"
 #include "cli/shell.h"
 #include "core/files/file.h"
@@ -281,13 +282,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
       {"timeout", CLI_NUMBER, &job->access.stall_seconds, "S",
        "of a URL, a server that is silent for so long is asked again, up to 4 times [15]", 1, 3600,
        .acts = {.on = CLI_FACT(LEVELS) | CLI_FACT(HYBRID), .is_work = 1}},
-      {"ao", CLI_INT, &job->n_directions, "N",
-       "light from all around falls only where nothing hides it, as so many directions tell: 64 look smooth, 1024 are "
-       "exact",
-       1, 65536, .group = "shadow and transparency", .intro = "What hides light, and what lets it through.",
-       .is_usual = 1, .acts = {.on = CLI_SURFACES}},
-      {"shadow", CLI_FLAG, &job->has_shadows, NULL, "the lights cast shadows, but for those at your eye", .is_usual = 1,
-       .acts = {.on = CLI_SURFACES}},
+      CLI_HIDDEN_LIGHT(job),
       {"transparency", CLI_FLAG, &job->is_transparent, NULL,
        "splats let light through as their opacity says, and meshes as the alpha of their materials and pictures",
        .acts = {.on = CLI_FACT(ALPHA), .is_warned = 1}},

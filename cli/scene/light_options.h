@@ -3,6 +3,27 @@
 
 #include "cli/scene/render_job.h"
 
+/* Rows of an option table: light that is hidden. */
+#define CLI_HIDDEN_LIGHT(job)                                                                                          \
+  {"ao",                                                                                                               \
+   CLI_INT,                                                                                                            \
+   &(job)->n_directions,                                                                                               \
+   "N",                                                                                                                \
+   "light from all around falls only where nothing hides it, as so many directions tell: 64 look smooth, 1024 are "    \
+   "exact",                                                                                                            \
+   1,                                                                                                                  \
+   65536,                                                                                                              \
+   .group = "shadow and transparency",                                                                                 \
+   .intro = "What hides light, and what lets it through.",                                                             \
+   .is_usual = 1,                                                                                                      \
+   .acts = {.on = CLI_SURFACES}},                                                                                      \
+  {                                                                                                                    \
+    "shadow", CLI_FLAG, &(job)->has_shadows, NULL, "the lights cast shadows, but for those at your eye",               \
+        .is_usual = 1, .acts = {                                                                                       \
+          .on = CLI_SURFACES                                                                                           \
+        }                                                                                                              \
+  }
+
 /* R,G,B, or one number for a grey, each 0 to 1e6; 0 where it is none. `text` has `length` letters. */
 int cli_parse_color(const char *text, size_t length, float color[3]);
 /* Each 0 to `most`. */

@@ -35,6 +35,7 @@ typedef struct cli_render_job {
   /* What else was asked for. */
   cli_effects_job effects;
   const char **inputs;
+  const char *const *left_out;   /* names of the scene's options that the command does without; null: it has all */
   int n_inputs, may_lack_inputs; /* no input is no wrong usage: the command then does something else */
   const char *outputs[CLI_MAX_OUTPUTS];
   int n_outputs;

@@ -127,6 +127,13 @@ static int take_shot_inputs(const cli_session *session, cli_render_job *job) {
   return CLI_DONE;
 }
 
+static int is_left_out(const cli_render_job *job, const char *name) {
+  for (const char *const *left_out = job->left_out; left_out && *left_out; left_out++)
+    if (strcmp(*left_out, name) == 0)
+      return 1;
+  return 0;
+}
+
 /* The command's own options, then those of the scene. */
 static int parse_all(cli_session *session, const cli_option *own, int n_own, const cli_option *scene, int n_scene,
                      int argc, char **argv, cli_render_job *job) {
@@ -137,11 +144,14 @@ static int parse_all(cli_session *session, const cli_option *own, int n_own, con
   if (table && job->inputs) {
     memcpy(table, own, (size_t)n_own * sizeof *table);
     for (int i = 0; i < n_own; i++) /* what is a command's own is what it is for */
-      table[i].is_usual |= !job->is_for_looking;
-    memcpy(table + n_own, scene, (size_t)n_scene * sizeof *table);
-    answer = cli_parse_noting(session, table, n_own + n_scene, argc, argv, job->inputs, &job->n_inputs, values);
+      table[i].is_usual |= !job->is_for_looking || job->left_out;
+    int n = n_own;
+    for (int i = 0; i < n_scene; i++)
+      if (!is_left_out(job, scene[i].name))
+        table[n++] = scene[i];
+    answer = cli_parse_noting(session, table, n, argc, argv, job->inputs, &job->n_inputs, values);
     if (answer == CLI_DONE)
-      cli_effects_note(&job->effects, table, n_own + n_scene, values);
+      cli_effects_note(&job->effects, table, n, values);
     if (answer == CLI_DONE && cli_shot_is_again(session, job))
       answer = CLI_AGAIN;
     if (answer == CLI_DONE && job->making.scene)

@@ -9,8 +9,16 @@
 #include "core/files/las_layout.h"
 #include "core/files/number.h"
 
-/* GeoKeys: the kind of system (1: projected, 2: geographic), the kind of pixel (1: an area), and the systems' codes. */
-enum { KEY_MODEL = 1024, KEY_RASTER = 1025, KEY_GEOGRAPHIC = 2048, KEY_PROJECTED = 3072, USER_DEFINED = 32767 };
+/* GeoKeys: the kind of system (1: projected, 2: geographic), the kind of pixel (1: an area), the systems' codes, and
+ * the code of the unit of lengths. */
+enum {
+  KEY_MODEL = 1024,
+  KEY_RASTER = 1025,
+  KEY_GEOGRAPHIC = 2048,
+  KEY_PROJECTED = 3072,
+  KEY_UNIT = 3076,
+  USER_DEFINED = 32767
+};
 
 enum { KEY_NUMBERS = 4 }; /* of the directory's head, and of a key */
 
@@ -52,6 +60,7 @@ conic_status conic_georeference_copy(conic_context *context, const conic_georefe
   memcpy(to->numbers, from->numbers, from->n_numbers * sizeof *to->numbers);
   memcpy(to->text, from->text, from->n_text);
   to->epsg = from->epsg;
+  to->unit_m = from->unit_m;
   return CONIC_OK;
 }
 
@@ -178,6 +187,23 @@ unsigned conic_georeference_find_epsg(const char *text, size_t n_bytes) {
   return open && !code ? find_utm(open, end) : code;
 }
 
+/* Metres of a projected system's unit: of the first UNIT that has no angle; 0: there is none. */
+static double find_unit(const char *text, size_t n_bytes) {
+  static const char *const units[] = {"UNIT", "LENGTHUNIT", NULL}, *const projected[] = {"PROJCS", NULL};
+  static const char *const newer[] = {"PROJCRS", "PROJECTEDCRS", NULL}, *const axes[] = {"CS", NULL};
+  const char *end = text + n_bytes, *at = find_element(text, end, newer);
+  at = at ? find_element(at, end, axes) : find_element(text, end, projected);
+  while (at && (at = find_element(at, end, units))) {
+    const char *name = ++at, *name_end = memchr(name, ',', (size_t)(end - name));
+    double value;
+    if (!name_end || !conic_number_parse(name_end + 1, (size_t)(end - name_end - 1), &value))
+      return 0.0;
+    if (!has_words(name, name_end, "degree") && !has_words(name, name_end, "rad") && !has_words(name, name_end, "gon"))
+      return value > 0.0 && value < 1e6 ? value : 0.0;
+  }
+  return 0.0;
+}
+
 /* --- the records of a LAS --- */
 
 typedef struct las_record {
@@ -273,6 +299,8 @@ static conic_status take_keys(conic_context *context, const las_records *found, 
       reference->epsg = key[3];
     if (i > 0 && key[0] == KEY_PROJECTED && !is_code)
       reference->epsg = 0;
+    if (i > 0 && key[0] == KEY_UNIT && key[1] == 0) /* EPSG's metre, foot and US survey foot */
+      reference->unit_m = key[3] == 9001 ? 1.0 : key[3] == 9002 ? 0.3048 : key[3] == 9003 ? 1200.0 / 3937.0 : 0.0;
   }
   if (!has_raster)
     put_key(reference->keys + KEY_NUMBERS * n_put++, KEY_RASTER, 1);
@@ -288,7 +316,10 @@ static conic_status take_las(conic_context *context, const las_records *found, c
   if (keys_are_sound(found))
     return take_keys(context, found, reference);
   reference->is_unknown = found->wkt.bytes && found->wkt.n_bytes > 1 && !epsg;
-  return epsg ? conic_georeference_of_epsg(context, epsg, reference) : CONIC_OK;
+  conic_status status = epsg ? conic_georeference_of_epsg(context, epsg, reference) : CONIC_OK;
+  if (found->wkt.bytes)
+    reference->unit_m = find_unit((const char *)found->wkt.bytes, found->wkt.n_bytes);
+  return status;
 }
 
 conic_status conic_georeference_of_las(conic_context *context, const unsigned char *head, size_t n_bytes,
@@ -320,9 +351,12 @@ static conic_status read_late_text(conic_context *context, FILE *file, const uns
       return CONIC_ERROR_MEMORY;
     size_t n = fread(text, 1, (size_t)n_bytes, file);
     unsigned epsg = conic_georeference_find_epsg(text, n);
+    double unit_m = find_unit(text, n);
     conic_memory_release(context, text);
     reference->is_unknown = n > 1 && !epsg;
-    return epsg ? conic_georeference_of_epsg(context, epsg, reference) : CONIC_OK;
+    conic_status status = epsg ? conic_georeference_of_epsg(context, epsg, reference) : CONIC_OK;
+    reference->unit_m = unit_m;
+    return status;
   }
   return CONIC_OK;
 }

@@ -11,6 +11,7 @@ typedef struct conic_georeference {
   char *text;      /* GeoAsciiParamsTag, which ends in a zero byte */
   size_t n_keys, n_numbers, n_text;
   unsigned epsg;  /* of the projected system, or else of the geographic one; 0: it has no code */
+  double unit_m;  /* metres of a unit of x and y; 0: the file does not say */
   int is_unknown; /* there are no keys, but the file names a system in well-known text without a code */
 } conic_georeference;
 

@@ -51,12 +51,23 @@ static conic_status write_shot(conic_context *context, const char *shot, FILE *t
   return CONIC_OK;
 }
 
-static conic_status write_image(conic_context *context, const conic_image *image, conic_tone tone, FILE *to) {
+static void write_resolution(double dpi, FILE *to) {
+  unsigned char chunk[32], *data = chunk + CONIC_PNG_DATA;
+  for (int i = 0; i < 2; i++)
+    conic_store_big_32(data + 4 * i, (uint32_t)(dpi / 0.0254 + 0.5));
+  data[8] = 1; /* a metre */
+  put_chunk(to, chunk, "pHYs", 9);
+}
+
+static conic_status write_image(conic_context *context, const conic_image *image, conic_tone tone,
+                                const conic_png_rows *rows, FILE *to) {
   unsigned char end[12];
   write_head(image, to);
+  if (rows)
+    write_resolution(rows->dpi, to);
   conic_status status = image->shot ? write_shot(context, image->shot, to) : CONIC_OK;
   if (status == CONIC_OK)
-    status = conic_png_write_strips(context, image, tone, to);
+    status = conic_png_write_strips(context, image, tone, rows, to);
   if (status == CONIC_OK)
     put_chunk(to, end, "IEND", 0);
   return status;
@@ -69,23 +80,32 @@ conic_status conic_png_check(conic_context *context, const char *path, unsigned 
   return CONIC_OK;
 }
 
-conic_status conic_png_write(conic_context *context, const char *path, const conic_image *image, conic_tone tone) {
+static conic_status write_file(conic_context *context, const char *path, const conic_image *image, conic_tone tone,
+                               const conic_png_rows *rows) {
   conic_output *output;
-  conic_status status = conic_png_check(context, path, conic_image_planes(image));
-  if (status == CONIC_OK)
-    status = conic_output_open(context, path, &output);
+  conic_status status = conic_output_open(context, path, &output);
   if (status != CONIC_OK)
     return status;
-  status = write_image(context, image, tone, conic_output_stream(output));
+  status = write_image(context, image, tone, rows, conic_output_stream(output));
   if (status == CONIC_OK)
     return conic_output_commit(output); /* which also says what is wrong with the stream */
   conic_output_abandon(output);
   return status;
 }
 
+conic_status conic_png_write(conic_context *context, const char *path, const conic_image *image, conic_tone tone) {
+  conic_status status = conic_png_check(context, path, conic_image_planes(image));
+  return status == CONIC_OK ? write_file(context, path, image, tone, NULL) : status;
+}
+
+conic_status conic_png_write_rows(conic_context *context, const char *path, const conic_png_rows *rows) {
+  const conic_image size = {.width = rows->width, .height = rows->height};
+  return write_file(context, path, &size, CONIC_TONE_SRGB, rows);
+}
+
 conic_status conic_png_write_to(conic_context *context, FILE *stream, const conic_image *image) {
   conic_status status = conic_png_check(context, "a picture", conic_image_planes(image));
-  return status == CONIC_OK ? write_image(context, image, CONIC_TONE_SRGB, stream) : status;
+  return status == CONIC_OK ? write_image(context, image, CONIC_TONE_SRGB, NULL, stream) : status;
 }
 
 /* --- reading --- */

@@ -19,6 +19,16 @@ conic_status conic_png_write(conic_context *context, const char *path, const con
  * MEMORY. */
 conic_status conic_png_write_to(conic_context *context, FILE *stream, const conic_image *image);
 
+/* A picture that nobody holds: rows of R, G, B, A, a byte each, which `next` fills from the top, and how many pixels an
+ * inch has. Errors: as conic_png_write, and what `next` returns. */
+typedef struct conic_png_rows {
+  int width, height;
+  double dpi;
+  void *cookie;
+  conic_status (*next)(void *cookie, int y, unsigned char *row);
+} conic_png_rows;
+conic_status conic_png_write_rows(conic_context *context, const char *path, const conic_png_rows *rows);
+
 /* Errors: INPUT, UNSUPPORTED, MEMORY. */
 conic_status conic_png_read(conic_context *context, const char *path, conic_image *image);
 

@@ -45,6 +45,8 @@ typedef struct png_strips {
   conic_samples_tables tables;
   size_t row_bytes, n_rows, n_strips, chunk_room; /* n_rows: of a strip, but the last */
   size_t first;                                   /* the first of those at work */
+  const conic_png_rows *rows;                     /* where they come from; null: from the image */
+  unsigned char *codes;                           /* of these, the row above those at work, and theirs */
   png_strip *strips;
 } png_strips;
 
@@ -142,6 +144,10 @@ static size_t rows_of(const png_strips *s, size_t i_strip) {
 }
 
 static void convert_row(const png_strips *s, size_t y, unsigned char *to) {
+  if (s->codes) {
+    memcpy(to, s->codes + (y + 1 - s->first * s->n_rows) * s->row_bytes, s->row_bytes);
+    return;
+  }
   const float *rgba = s->image->planes[CONIC_PLANE_RGBA];
   size_t width = (size_t)s->image->width;
   conic_samples_row_from_rgba(&s->tables, s->layout, rgba + 4 * width * y, width, to);
@@ -180,6 +186,20 @@ static void pack_strip(void *data, size_t i) {
   size_t n_packed = pack_rows(strip, n_bytes, strip->chunk + CONIC_PNG_DATA + n_head,
                               s->chunk_room - CONIC_PNG_DATA - n_head - SUM, is_last);
   strip->n_chunk = n_packed ? conic_png_close_chunk(strip->chunk, "IDAT", n_head + n_packed) : 0;
+}
+
+/* Lets the rows of the next n strips be made. */
+static conic_status make_rows(png_strips *s, size_t n, size_t n_before) {
+  size_t begin = s->first * s->n_rows, height = (size_t)s->image->height;
+  size_t end = begin + n * s->n_rows < height ? begin + n * s->n_rows : height;
+  conic_status status = CONIC_OK;
+  if (!s->rows)
+    return CONIC_OK;
+  if (begin > 0)
+    memcpy(s->codes, s->codes + n_before * s->n_rows * s->row_bytes, s->row_bytes);
+  for (size_t y = begin; y < end && status == CONIC_OK; y++)
+    status = s->rows->next(s->rows->cookie, (int)y, s->codes + (y + 1 - begin) * s->row_bytes);
+  return status;
 }
 
 /* Packs the next n strips and writes them. */
@@ -222,9 +242,11 @@ static void close_strips(conic_context *context, png_strips *s, size_t n) {
   conic_memory_release(context, s->strips);
 }
 
-conic_status conic_png_write_strips(conic_context *context, const conic_image *image, conic_tone tone, FILE *to) {
+conic_status conic_png_write_strips(conic_context *context, const conic_image *image, conic_tone tone,
+                                    const conic_png_rows *rows, FILE *to) {
   png_strips s = {
       .image = image,
+      .rows = rows,
       .layout = {
           .n_channels = 4, .sample_bytes = 1, .is_straight = 1, .is_display = image->is_display != 0, .tone = tone}};
   unsigned char end[CONIC_PNG_DATA + 4 + SUM];
@@ -240,16 +262,22 @@ conic_status conic_png_write_strips(conic_context *context, const conic_image *i
   n_a_round = n_a_round < s.n_strips ? n_a_round : s.n_strips;
   conic_samples_tables_fill(&s.tables);
   conic_status status = open_strips(context, &s, n_a_round);
+  if (status == CONIC_OK && rows)
+    status = conic_memory_allocate_these(context, CONIC_ROOM(s.codes, (n_a_round * s.n_rows + 1) * s.row_bytes));
   while (status == CONIC_OK && s.first < s.n_strips) {
     size_t left = s.n_strips - s.first;
     status = conic_progress(context, "write", (double)s.first / (double)s.n_strips);
+    left = left < n_a_round ? left : n_a_round;
     if (status == CONIC_OK)
-      status = write_round(context, &s, left < n_a_round ? left : n_a_round, to, &adler);
+      status = make_rows(&s, left, n_a_round);
+    if (status == CONIC_OK)
+      status = write_round(context, &s, left, to, &adler);
   }
   if (status == CONIC_OK) { /* which is known last, in a chunk of its own */
     conic_store_big_32(end + CONIC_PNG_DATA, (uint32_t)adler);
     fwrite(end, 1, conic_png_close_chunk(end, "IDAT", 4), to);
   }
   close_strips(context, &s, n_a_round);
+  conic_memory_release(context, s.codes);
   return status;
 }

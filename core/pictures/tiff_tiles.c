@@ -11,7 +11,7 @@ enum { ZIP_LEVEL = 2 };
 enum { TILE = CONIC_TIFF_TILE };
 
 /* TIFF's types of numbers, and their bytes. */
-typedef enum tiff_type { ASCII = 2, SHORT = 3, LONG = 4, DOUBLE = 12, LONG8 = 16 } tiff_type;
+typedef enum tiff_type { ASCII = 2, SHORT = 3, LONG = 4, RATIONAL = 5, DOUBLE = 12, LONG8 = 16 } tiff_type;
 
 /* Numbers in the file; their meaning is noted where they are used. */
 enum { COMPRESSION_NONE = 1, COMPRESSION_DEFLATE = 8, PREDICTOR_NONE = 1, PREDICTOR_HORIZONTAL = 2 };
@@ -223,7 +223,14 @@ static void add_pixel_tags(tiff_directory *d) {
   if (layout->description)
     add_tag(d, 270, ASCII, strlen(layout->description) + 1, layout->description);
   add_short(d, 277, is_elevation ? 1 : 4); /* samples a pixel, */
-  add_short(d, 284, 1);                    /* side by side */
+  if (layout->dpi > 0.0) {
+    const uint64_t a_hundred_inches = (uint64_t)(layout->dpi * 100.0 + 0.5) | UINT64_C(100) << 32;
+    add_tag(d, 282, RATIONAL, 1, &a_hundred_inches);
+    add_tag(d, 283, RATIONAL, 1, &a_hundred_inches);
+  }
+  add_short(d, 284, 1); /* side by side */
+  if (layout->dpi > 0.0)
+    add_short(d, 296, 2); /* of an inch */
   add_short(d, 317, is_packed && !is_elevation ? PREDICTOR_HORIZONTAL : PREDICTOR_NONE);
   add_short(d, 322, TILE);
   add_short(d, 323, TILE);
@@ -271,7 +278,8 @@ static void put_tags(conic_tiff *tiff) {
   if (tiff->at % 2)
     put_tiff_number(tiff, 0, 1);
   add_pixel_tags(&directory);
-  add_place_tags(&directory);
+  if (!(tiff->layout.dpi > 0.0))
+    add_place_tags(&directory);
   if (tiff->layout.is_elevation) { /* as GDAL reads it */
     int n = snprintf(nodata, sizeof nodata, "%.9g", tiff->layout.nodata);
     add_tag(&directory, 42113, ASCII, (size_t)n + 1, nodata);

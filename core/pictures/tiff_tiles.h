@@ -10,6 +10,7 @@ typedef struct conic_tiff_layout {
   uint64_t width, height; /* 1 to 2³¹ - 1 */
   int is_elevation;       /* a pixel is a float; else R, G, B, A, a byte each, sRGB-encoded, not premultiplied */
   double nodata;          /* of elevations: the value where nothing is */
+  double dpi;             /* above 0: it is a sheet of paper, with so many pixels an inch, and nowhere in the world */
   double pixel;           /* a pixel's edge in world units */
   double corner[2];       /* x and y of the picture's upper left corner; x grows to the right, y upwards */
   const conic_georeference *reference; /* the coordinate system; null, or empty: not known */
