@@ -1,4 +1,5 @@
 /* A panel's picture: an orthographic shot, in bands of rows where it is large. */
+#include "cli/render/fill_shot.h"
 #include "cli/render/units.h"
 #include "cli/sheet/sheet.h"
 #include "core/pictures/image_samples.h"
@@ -67,14 +68,23 @@ static conic_status keep_rows(cli_sheet_job *job, cli_panel *panel, const conic_
   return status;
 }
 
+static void look_at_rows(cli_sheet_job *job, const cli_panel *panel, int first_row, int n_rows) {
+  cli_render_job *scene = &job->scene;
+  scene->shot.camera = camera_of(job, panel, first_row, n_rows);
+  scene->shot.render.near_z = (panel->has_line ? 1.0 : 0.5) * stand_back(panel);
+}
+
+conic_status cli_panel_expose(cli_sheet_job *job, const cli_panel *panel) {
+  look_at_rows(job, panel, 0, panel->height);
+  return cli_choose_exposure(&job->scene);
+}
+
 static conic_status draw_rows(cli_sheet_job *job, cli_panel *panel, int first_row, int n_rows) {
   cli_render_job *scene = &job->scene;
   conic_image image = {0};
   conic_shot_outcome outcome;
   int makes = cli_units_make_picture(job->session, scene);
-  scene->shot.camera = camera_of(job, panel, first_row, n_rows);
-  scene->shot.render.near_z = (panel->has_line ? 1.0 : 0.5) * stand_back(panel);
-  scene->last_camera = scene->shot.camera;
+  look_at_rows(job, panel, first_row, n_rows);
   conic_status status = conic_image_allocate(job->session->context, panel->width, n_rows, scene->shot.planes, &image);
   if (status == CONIC_OK)
     status = cli_render_picture(scene, &image, &outcome);

@@ -63,6 +63,8 @@ typedef struct cli_sheet_job {
 conic_status cli_sheet_place(cli_sheet_job *job);
 /* Sets the scale, unless it is given, and where on the sheet each panel is. Errors: ARGUMENT (no such paper). */
 conic_status cli_sheet_lay_out(cli_sheet_job *job);
+/* The exposure of all panels, where it is to be found, is one panel's. */
+conic_status cli_panel_expose(cli_sheet_job *job, const cli_panel *panel);
 /* Draws a panel into its store. Collective, where several processes share pictures. */
 conic_status cli_panel_draw(cli_sheet_job *job, cli_panel *panel);
 /* The strokes around the panels, and on them. Errors: MEMORY. */

@@ -110,6 +110,8 @@ static conic_status draw_panels(cli_sheet_job *job) {
   cli_shot_take_options(scene);
   memcpy(scene->shot.light.lamps, scene->lamps.lamps, sizeof scene->shot.light.lamps);
   double start = cli_seconds();
+  if (status == CONIC_OK)
+    status = cli_panel_expose(job, &job->panels[0]);
   for (int i = 0; i < job->n_panels && status == CONIC_OK; i++)
     status = cli_panel_draw(job, &job->panels[i]);
   job->draw_ms = 1e3 * (cli_seconds() - start);

@@ -233,7 +233,8 @@ static void describe_sheet(const cli_sheet_job *job, char *text, size_t room) {
   char system[48] = "";
   if (reference->epsg)
     snprintf(system, sizeof system, "   EPSG:%u", reference->epsg);
-  snprintf(text, room, "%.80s%s   coordinates in %s", conic_file_name(job->scene.inputs[0]), system, job->unit);
+  const char *name = conic_file_name(job->scene.inputs[0]);
+  snprintf(text, room, "%.80s%s   coordinates in %s", strcmp(name, job->title) ? name : "", system, job->unit);
 }
 
 static void letter_foot(const lettering *l) {

@@ -1,0 +1,49 @@
+#!/usr/bin/env bash
+# conic sheet: a length is as long on paper as the scale says, in all corners of a sheet, and far from the origin; what is
+# written does not depend on memory or threads; what cannot be drawn is refused.
+set -uo pipefail
+# shellcheck source=tests/support/program.bash
+source "$1/tests/support/program.bash"
+python=$(command -v python3) || {
+  echo "skipped: python3 is not installed"
+  exit 77
+}
+check=$1/tests/cli/sheet.py
+
+# 10 m at 1:100 and 300 dpi are 1181.1 pixels. Coordinates are those of a zone of UTM.
+"$python" "$check" make corners.obj 30 28 10 500000 5000000
+run 0 sheet corners.obj --up z --scale 1:100 --shade none --samples 1 -o corners.tif --json corners.json
+"$python" "$check" edges corners.tif corners.json 1181.1 > right || fail "10 m at 1:100"
+[[ $(cat right) == 500030.00* ]] || fail "the right edge is at $(cat right)"
+# Across 65,000 pixels; 1 m is 118.11.
+"$python" "$check" make wide.obj 547 4 1 500000 5000000
+run 0 sheet wide.obj --up z --scale 1:100 --shade none --samples 1 -o wide.tif --json wide.json
+"$python" "$check" edges wide.tif wide.json 118.11 > right || fail "1 m across 65,000 pixels"
+[[ $(cat right) == 500547.0[01]* || $(cat right) == 500546.99* ]] || fail "the right edge is at $(cat right)"
+
+# Feet, by the unit; a pixel's width; bands of rows, and threads.
+run 0 sheet corners.obj --up z --unit ft --scale 1:100 -o feet.png --json feet.json
+grep -q '"gsd": 0.0277' feet.json || fail "a foot: $(grep gsd feet.json)"
+run 0 sheet corners.obj --up z --gsd 0.01 --dpi 254 -o gsd.png --json gsd.json
+grep -q '"scale": 100,' gsd.json || fail "$(grep scale gsd.json)"
+run 0 make terrain -n 4000 -o land.ply
+sheet=(sheet land.ply --plan --facade 30 --section 0.1,0.2:0.8,0.7:0.02 --beyond 0.3 --scale 1:3 --dpi 100)
+run 0 "${sheet[@]}" -o one.png
+run 0 "${sheet[@]}" -o two.png --threads 1 --memory 1
+cmp -s one.png two.png || fail "memory or threads change the sheet"
+run 0 "${sheet[@]}" -o one.pdf
+run 0 "${sheet[@]}" -o two.pdf --threads 1 --memory 1
+cmp -s one.pdf two.pdf || fail "memory or threads change the page"
+[[ $(head -c 8 one.pdf) == %PDF-1.4 && $(tail -c 6 one.pdf) == %%EOF ]] || fail "no PDF"
+at=$(tail -n 2 one.pdf | head -n 1)
+[[ $(tail -c +$((at + 1)) one.pdf | head -c 4) == xref ]] || fail "the table of the PDF is not at $at"
+
+for options in "" "-o x.exr" "-o x.png --scale 0:1" "-o x.png --scale 1:10 --gsd 1" "-o x.png --facade 1,2" "-o x.png --section 1,1:1,1" \
+  "-o x.png --beyond 1" "-o x.png --paper A9" "-o x.png --paper A5 --scale 2:1" "-o x.png --size 20x20" "-o x.png --north 9 --section 0,0:1,1" \
+  "-o land.ply" "-o x.png --scale 1000:1"; do
+  # shellcheck disable=SC2086 # several words
+  run 2 sheet land.ply $options
+done
+run 3 sheet gone.ply -o x.png
+[[ ! -e x.png ]] || fail "a sheet that was refused is there"
+[[ $failures -eq 0 ]]
