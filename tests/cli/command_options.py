@@ -110,6 +110,8 @@ REFUSED = [
 ]
 # What may rightly come to the same: (stage, option) with the reason.
 SAME = {
+    ("sheet g.spz -o out.pdf --dpi 40", "--plan"): "a plan is what a sheet has of itself",
+    ("sheet raw.xyz --scale 1:20 -o out.png --dpi 40", "--plan"): "a plan is what a sheet has of itself",
     ("prepare mesh.obj -o out.ply", "--features"): "what is off the mesh is sharp anyway",
     ("mls project raw.xyz -o out.ply", "--cluster"): "no cells are so small",
     ("mls project raw.xyz -o out.ply --type apss", "--cluster"): "no cells are so small",
