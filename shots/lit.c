@@ -160,3 +160,14 @@ conic_status conic_stage_lit(const conic_shot_stage *stage, const conic_look *lo
     return status;
   return status == CONIC_OK ? light(stage, look, image) : status;
 }
+
+/* Of a picture that processes draw together, the first one has the pixels. */
+conic_status conic_stage_domed(const conic_shot_stage *stage, const conic_look *look, conic_image *image,
+                               conic_render_statistics *statistics) {
+  const conic_shot_work *work = stage->work;
+  conic_status status = stage->next->draw(stage->next, look, image, statistics);
+  int has_picture = work->units != CONIC_UNITS_WINDOWS || work->executor->index == 0;
+  return status == CONIC_OK && has_picture && image->planes[CONIC_PLANE_RGBA]
+             ? conic_image_eye_dome(work->context, look->camera, work->shot->light.dome_stops, image)
+             : status;
+}

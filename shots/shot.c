@@ -31,6 +31,7 @@ static const conic_shot_stage *stages_chain(conic_shot_work *work, conic_shot_st
                {plan->is_composited, conic_stage_composited},
                {plan->is_gathered, conic_stage_gathered},
                {plan->lit != CONIC_LIT_NOT && !is_lit_below, conic_stage_lit},
+               {work->shot->light.dome_stops > 0.0, conic_stage_domed},
                {plan->is_accumulated, conic_stage_accumulated}};
   for (size_t i = 0; i < sizeof above / sizeof *above; i++) {
     if (!above[i].is_there)

@@ -224,6 +224,7 @@ static const conic_shot_row shot_light_list[] = {
     {CONIC_ROW_FLOAT, AT(sun_radius_deg), "degrees", "how large each light without a place is", IN(0, 90)},
     {CONIC_ROW_LEFT_OUT, AT(sky), .meaning = "the input whose role is sky"},
     {CONIC_ROW_DOUBLE, AT(reflectance), NULL, "how much of each colour is the sky, mirrored", IN(0, 1)},
+    {CONIC_ROW_DOUBLE, AT(dome_stops), "stops", "how much darker eye-dome lighting makes what lies deep", IN(0, 16)},
     RESERVED(reserved)};
 TABLE(shot_light, NULL, conic_fault_of_shot_light)
 #undef S

@@ -14,7 +14,8 @@ int conic_shot_is_lit(const conic_shot *shot) {
 unsigned conic_shot_needs(const conic_shot *shot, unsigned planes) {
   if (conic_shot_is_lit(shot))
     planes |= Z | NORMAL | (planes & RGBA ? 1u << CONIC_PLANE_ALBEDO : 0);
-  if (planes & 1u << CONIC_PLANE_POSITION || (shot->n_samples > 0 && conic_focus_is_seen(shot)))
+  if (planes & 1u << CONIC_PLANE_POSITION || (planes & RGBA && shot->light.dome_stops > 0.0) ||
+      (shot->n_samples > 0 && conic_focus_is_seen(shot)))
     planes |= Z;
   if (planes & 1u << CONIC_PLANE_CLUSTER)
     planes |= 1u << CONIC_PLANE_ID;
@@ -52,6 +53,8 @@ static const char *find_fault(const conic_source *source, const conic_shot *shot
     return fault;
   if (conic_shot_is_lit(shot) && abilities & CONIC_SOURCE_COMPOSITES && !conic_source_surfaces(source))
     return "light is hidden from surfaces, not from Gaussians that are composited";
+  if (shot->light.dome_stops > 0.0 && abilities & CONIC_SOURCE_COMPOSITES)
+    return "eye-dome lighting is of surfaces, not of Gaussians that are composited";
   if (shot->planes & CONIC_GAUSSIAN_PLANES && !(abilities & CONIC_SOURCE_COMPOSITES))
     return "the planes T, medianZ, inverseZ, last and doubt are of Gaussians that are composited";
   if (shot->planes & 1u << CONIC_PLANE_CLUSTER && !(abilities & CONIC_SOURCE_CLUSTERS))

@@ -1,4 +1,4 @@
-/* The stages that draw a shot, one after the other: accumulated, lit, gathered, leaf. Each does one thing to what its
+/* The stages that draw a shot, one after the other: accumulated, domed, lit, gathered, leaf. Each does one thing to what its
  * next one draws, and leaves out what the plan does without. Views and samples that are lit have the lit stage below
  * the gathered one. Surfaces among Gaussians are composited above the lit stage, and below the gathered one. No stage
  * calls back. */
@@ -67,6 +67,8 @@ struct conic_shot_stage {
 /* The draw functions of the five. */
 conic_status conic_stage_accumulated(const conic_shot_stage *stage, const conic_look *look, conic_image *image,
                                      conic_render_statistics *statistics);
+conic_status conic_stage_domed(const conic_shot_stage *stage, const conic_look *look, conic_image *image,
+                               conic_render_statistics *statistics);
 conic_status conic_stage_lit(const conic_shot_stage *stage, const conic_look *look, conic_image *image,
                              conic_render_statistics *statistics);
 conic_status conic_stage_composited(const conic_shot_stage *stage, const conic_look *look, conic_image *image,

@@ -30,6 +30,8 @@ static conic_status get_image(cli_session *session, verify_job *job, const conic
   double start = cli_seconds();
   status = conic_render_drawing(session->context, job->scene.renderer, drawing, camera, &job->scene.shot.render,
                                 job->scene.shot.view.samples, &job->image, &job->scene.statistics);
+  if (status == CONIC_OK && job->scene.shot.light.dome_stops > 0.0)
+    status = conic_image_eye_dome(session->context, camera, job->scene.shot.light.dome_stops, &job->image);
   job->render_ms = 1e3 * (cli_seconds() - start);
   return status;
 }
@@ -48,6 +50,9 @@ static conic_status compare(cli_session *session, verify_job *job) {
   if (status == CONIC_OK)
     status = cli_reference_draw(session, &job->scene, &camera, (conic_oracle_question)job->question, CONIC_FLOATS_OWN,
                                 (size_t)job->n_pixels, job->image_path != NULL, &job->reference);
+  if (status == CONIC_OK && job->scene.shot.light.dome_stops > 0.0)
+    status = conic_oracle_eye_dome(session->context, &camera, job->scene.shot.light.dome_stops, &job->image,
+                                   &job->reference);
   job->oracle_ms = 1e3 * (cli_seconds() - start);
   if (status == CONIC_OK)
     status = conic_oracle_compare(session->context, &job->reference, &job->image, &job->verdict);
@@ -251,6 +256,8 @@ static int check_samples(const cli_session *session, verify_job *job) {
     return answer;
   if (job->question == CONIC_ORACLE_EXACT || cli_is_composited(&job->scene))
     return cli_usage("verify: --accumulate judges means of splats and triangles by their method; give --sample I");
+  if (job->scene.shot.light.dome_stops > 0.0)
+    return cli_usage("verify: of --shade edl, it judges samples one by one: --sample I");
   const unsigned normals = 1u << CONIC_PLANE_NORMAL; /* the picture has the direction of the sum of normals */
   if (job->scene.is_aov_given && job->scene.shot.planes & normals)
     return cli_usage("verify: of N, a mean of samples is not judged; --sample I judges that of a sample");

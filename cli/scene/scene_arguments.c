@@ -14,10 +14,14 @@ static const char *const only_words[] = {"triangles", "surfels", NULL};
 
 /* The words of choices that the library names, in the order of its numbers. */
 typedef struct library_words {
-  const char *methods[CONIC_N_METHODS + 2], *shadings[CONIC_N_SHADINGS + 1], *isas[CONIC_N_ISAS + 1];
+  const char *methods[CONIC_N_METHODS + 2], *shadings[CONIC_N_SHADINGS + 4], *isas[CONIC_N_ISAS + 1];
   const char *profiles[CONIC_N_GAUSSIAN_PROFILES + 2];
   char profile_help[640];
 } library_words;
+
+/* Shades with eye-dome lighting on top, in the order of conic_shading; and its usual strength. */
+static const char *const domed[] = {"edl", "lambert+edl", "phong+edl"};
+static const double usual_stops = 4.0;
 
 static library_words find_words(void) {
   library_words words = {.methods[CONIC_N_METHODS] = "patch", .profiles[CONIC_N_GAUSSIAN_PROFILES] = "surface"};
@@ -34,6 +38,8 @@ static library_words find_words(void) {
     words.methods[i] = conic_method_name((conic_method)i);
   for (int i = 0; i < CONIC_N_SHADINGS; i++)
     words.shadings[i] = conic_shading_name((conic_shading)i);
+  for (int i = 0; i < 3; i++)
+    words.shadings[CONIC_N_SHADINGS + i] = domed[i];
   for (int i = 0; i < CONIC_N_ISAS; i++)
     words.isas[i] = conic_isa_name((conic_isa)i);
   return words;
@@ -92,6 +98,10 @@ static int parse_view(const char *text, void *value) {
       job->framing.elevation_deg = sides[i].elevation_deg;
     }
   return *text != '\0';
+}
+
+static int parse_stops(const char *text, void *stops) {
+  return cli_parse_number(text, stops) && *(double *)stops > 0.0 && *(double *)stops <= 16.0;
 }
 
 static int parse_ignore_center(const char *text, void *value) {
@@ -193,7 +203,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
                          .prefilter = (double)job->shot.render.prefilter};
   conic_render_options *o = &job->shot.render;
   conic_framing *view = &job->framing;
-  int shading = (int)o->shading;
+  int shading = -1;
+  double stops = 0.0;
   if (job->making.words)
     raw = *job->making.words;
   const library_words words = find_words();
@@ -315,10 +326,12 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"near", CLI_PARSED, &job->near_z, "Z", "nothing nearer to the camera is drawn [1e-4 of the scene's diagonal]",
        .parse = cli_parse_near, .acts = {.on = CLI_SURFACES, .apart = CLI_FACT(MAP)}},
       {"shade", CLI_CHOICE, &shading, "HOW",
-       "none (colours as they are), lambert (matt) or phong (with a highlight) [phong; none for maps of what has "
-       "colours]",
+       "none (colours as they are), lambert (matt), phong (with a highlight), or edl (eye-dome lighting: darker where "
+       "what is around is nearer, by up to so many stops as stand behind it, edl:4); lambert+edl and phong+edl are both "
+       "[phong; none for maps of what has colours]",
        .choices = words.shadings, .is_given = &job->is_shade_given, .group = "light and background",
-       .intro = "What shines on surfaces, and what is behind them.", .is_usual = 1, .acts = {.on = CLI_SURFACES}},
+       .intro = "What shines on surfaces, and what is behind them.", .is_usual = 1, .parse_tail = parse_stops,
+       .tail = &stops, .acts = {.on = CLI_SURFACES}},
       {"light", CLI_PARSED, job, "LIGHT",
        "a light: X,Y,Z, the direction towards it, in the scene; camera:X,Y,Z, likewise, but it moves with the camera "
        "(right, up, towards you); head, at your eye; each with its colour :R,G,B behind it or without, and a direction "
@@ -401,7 +414,12 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   job->shot.gaussians.ignores_center = (uint32_t)raw.ignores_center;
   if (raw.profile < CONIC_N_GAUSSIAN_PROFILES && (raw.is_profile_given || !job->is_plain))
     job->opening.gaussians = &job->shot.gaussians;
-  o->shading = (conic_shading)shading;
+  if (shading >= 0) {
+    o->shading = (conic_shading)(shading % CONIC_N_SHADINGS);
+    job->shot.light.dome_stops = shading < CONIC_N_SHADINGS ? 0.0 : stops > 0.0 ? stops : usual_stops;
+  }
+  if (stops > 0.0 && shading < CONIC_N_SHADINGS)
+    return cli_usage("%s: --shade edl:STOPS says how strong that is; other shades have no strength", session->command);
   o->kernel.cutoff = (float)raw.cutoff;
   o->prefilter = (float)raw.prefilter;
   job->is_prefilter_given = raw.is_prefilter_given;

@@ -83,6 +83,10 @@ static int check_each_value(const cli_session *session, const cli_scene_words *w
     return cli_usage("%s: --passes takes 3 or 1", command);
   if (job->shot.render.tile & (job->shot.render.tile - 1))
     return cli_usage("%s: --tile takes 8, 16, 32 or 64", command);
+  if (job->shot.light.dome_stops > 0.0 && cli_scene_is_top(job))
+    return cli_usage("%s: --shade edl is not of --camera top; conic sheet --plan draws it", command);
+  if (job->shot.light.dome_stops > 0.0 && !job->is_for_looking && strcmp(command, "verify") != 0)
+    return cli_usage("%s: --shade edl is of conic render, sheet and verify", command);
   if (job->projection == CONIC_CAMERA_CUBE && job->framing.height != 6 * job->framing.width)
     return cli_usage("%s: --projection cube is six times as high as wide", command);
   return CLI_DONE;

@@ -45,7 +45,7 @@ static void put_on_paper(const cli_sheet_job *job, const cli_panel *panel, const
     if (panel->kind == CLI_PANEL_SECTION && (double)z[i] <= cut)
       share = 0.06f;
     else if (panel->kind == CLI_PANEL_SECTION && (double)z[i] <= last)
-      share = 0.45f, paper = 0.55f;
+      share = 0.6f, paper = 0.4f;
     else if (panel->kind == CLI_PANEL_SECTION)
       memset(pixel, 0, 4 * sizeof *pixel);
     for (int c = 0; c < 3; c++)
@@ -54,7 +54,9 @@ static void put_on_paper(const cli_sheet_job *job, const cli_panel *panel, const
   }
 }
 
-static conic_status keep_rows(cli_sheet_job *job, cli_panel *panel, const conic_image *image, int first_row) {
+/* Keeps the rows from first_row to before end_row, of an image that begins at image_row. */
+static conic_status keep_rows(cli_sheet_job *job, cli_panel *panel, const conic_image *image, int image_row,
+                              const int kept[2]) {
   conic_context *context = job->session->context;
   const conic_samples_layout bytes = {.n_channels = 3, .sample_bytes = 1, .is_display = image->is_display != 0};
   size_t width = (size_t)image->width;
@@ -62,8 +64,8 @@ static conic_status keep_rows(cli_sheet_job *job, cli_panel *panel, const conic_
   conic_status status = rows ? CONIC_OK : CONIC_ERROR_MEMORY;
   if (rows)
     conic_samples_from_rgba(context, image->planes[CONIC_PLANE_RGBA], image->width, image->height, bytes, rows);
-  for (size_t y = 0; y < (size_t)image->height && status == CONIC_OK; y++)
-    status = cli_top_store_put(&panel->store, 0, (size_t)first_row + y, rows + 3 * width * y, width);
+  for (int y = kept[0]; y < kept[1] && status == CONIC_OK; y++)
+    status = cli_top_store_put(&panel->store, 0, (size_t)y, rows + 3 * width * (size_t)(y - image_row), width);
   conic_memory_release(context, rows);
   return status;
 }
@@ -79,11 +81,17 @@ conic_status cli_panel_expose(cli_sheet_job *job, const cli_panel *panel) {
   return cli_choose_exposure(&job->scene);
 }
 
-static conic_status draw_rows(cli_sheet_job *job, cli_panel *panel, int first_row, int n_rows) {
+/* Pixels may take light from others: what is kept has as many rows around it as reach it. */
+static conic_status draw_rows(cli_sheet_job *job, cli_panel *panel, const int kept[2]) {
   cli_render_job *scene = &job->scene;
   conic_image image = {0};
   conic_shot_outcome outcome;
-  int makes = cli_units_make_picture(job->session, scene);
+  int makes = cli_units_make_picture(job->session, scene), is_domed = scene->shot.light.dome_stops > 0.0;
+  int first_row = is_domed && kept[0] > BLOCK_ROWS ? kept[0] - BLOCK_ROWS : 0;
+  int end_row = is_domed && kept[1] + BLOCK_ROWS < panel->height ? kept[1] + BLOCK_ROWS : panel->height;
+  first_row = is_domed ? first_row : kept[0];
+  end_row = is_domed ? end_row : kept[1];
+  int n_rows = end_row - first_row;
   look_at_rows(job, panel, first_row, n_rows);
   conic_status status = conic_image_allocate(job->session->context, panel->width, n_rows, scene->shot.planes, &image);
   if (status == CONIC_OK)
@@ -91,7 +99,7 @@ static conic_status draw_rows(cli_sheet_job *job, cli_panel *panel, int first_ro
   if (status == CONIC_OK && makes) {
     job->statistics.pixels_covered += outcome.statistics.pixels_covered;
     put_on_paper(job, panel, &image);
-    status = keep_rows(job, panel, &image, first_row);
+    status = keep_rows(job, panel, &image, first_row, kept);
   }
   conic_image_release(job->session->context, &image);
   return status;
@@ -113,7 +121,7 @@ conic_status cli_panel_draw(cli_sheet_job *job, cli_panel *panel) {
                                            (size_t)panel->height, job->memory_bytes / 8, &panel->store);
   for (int y = 0; y < panel->height && status == CONIC_OK; y += step) {
     cli_session_part(job->session, "panel", (int)(panel - job->panels) + 1, job->n_panels);
-    status = draw_rows(job, panel, y, panel->height - y < step ? panel->height - y : step);
+    status = draw_rows(job, panel, (const int[2]){y, panel->height - y < step ? panel->height : y + step});
   }
   scene->shot.view.samples = samples;
   return status;

@@ -99,14 +99,18 @@ static conic_status know_world(cli_sheet_job *job) {
 }
 
 static conic_status draw_panels(cli_sheet_job *job) {
+  enum { USUAL_STOPS = 4 };
   cli_render_job *scene = &job->scene;
   conic_status status = know_world(job);
   if (status == CONIC_OK)
     status = cli_sheet_place(job);
   if (status == CONIC_OK)
     status = cli_sheet_lay_out(job);
-  if (!scene->is_shade_given && conic_source_measure(scene->source)->has_colors)
-    scene->shot.render.shading = CONIC_SHADE_NONE; /* photographs have their light already */
+  if (!scene->is_shade_given && !(scene->abilities & CONIC_SOURCE_COMPOSITES)) {
+    scene->shot.light.dome_stops = USUAL_STOPS; /* without perspective, only shades tell what is how deep */
+    if (conic_source_measure(scene->source)->has_colors)
+      scene->shot.render.shading = CONIC_SHADE_NONE; /* photographs have their light already */
+  }
   cli_shot_take_options(scene);
   memcpy(scene->shot.light.lamps, scene->lamps.lamps, sizeof scene->shot.light.lamps);
   double start = cli_seconds();

@@ -141,6 +141,11 @@ CONIC_API conic_status conic_oracle_render_asked(conic_context *context, const c
                                                  const conic_camera *camera, const conic_render_options *options,
                                                  const conic_oracle_asking *asking, conic_reference *reference);
 
+/* Makes the reference one of the picture under eye-dome lighting of that strength (conic/lighting.h), as the picture's
+ * own plane Z gives it. Errors: ARGUMENT (no Z, or another size). */
+CONIC_API conic_status conic_oracle_eye_dome(conic_context *context, const conic_camera *camera, double stops,
+                                             const conic_image *image, conic_reference *reference);
+
 /* The widest range of a channel of the plane among the alternatives, measured as in conic_oracle_plane_verdict; 0 for
  * id, and where there are none. */
 CONIC_API double conic_reference_width(const conic_reference *reference, conic_plane plane);

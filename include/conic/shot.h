@@ -59,7 +59,8 @@ typedef struct conic_shot_light {
   float sun_radius_deg[CONIC_MAX_LIGHTS]; /* of the lights with a direction, 0 to 90: how large they are for samples */
   const conic_sky *sky;                   /* null: none; the caller's */
   double reflectance;                     /* 0 to 1: so much of each colour is the sky, mirrored */
-  uint64_t reserved[3];
+  double dome_stops;                      /* 0 to 16: the strength of conic_image_eye_dome; 0: none of it */
+  uint64_t reserved[2];
 } conic_shot_light;
 
 typedef struct conic_shot {

@@ -27,7 +27,7 @@ def render(
     quality: Optional[Literal["draft", "good", "final"]] = None,
     samples: Optional[int] = None,
     as_: Optional[Literal["auto", "points", "mesh", "hybrid"]] = None,
-    shade: Optional[Literal["none", "lambert", "phong"]] = None,
+    shade: Optional[Literal["none", "lambert", "phong", "edl", "lambert+edl", "phong+edl"]] = None,
     background: Optional[Union[str, float, Sequence[float]]] = None,
     exposure: Optional[Union[str, float, Sequence[float]]] = None,
     azimuth: Optional[float] = None,
@@ -238,8 +238,9 @@ def render(
         --deep]
     cull: back: leave out what faces away; or none [none]
     near: nothing nearer to the camera is drawn [1e-4 of the scene's diagonal]
-    shade: none (colours as they are), lambert (matt) or phong (with a highlight) [phong; none for maps of what
-        has colours]
+    shade: none (colours as they are), lambert (matt), phong (with a highlight), or edl (eye-dome lighting:
+        darker where what is around is nearer, by up to so many stops as stand behind it, edl:4); lambert+edl
+        and phong+edl are both [phong; none for maps of what has colours]
     light: a light: X,Y,Z, the direction towards it, in the scene; camera:X,Y,Z, likewise, but it moves with the
         camera (right, up, towards you); head, at your eye; each with its colour :R,G,B behind it or without,
         and a direction then with the radius of its disc, :2deg, for soft shadows with --accumulate; lamp:X,Y,Z,
@@ -338,7 +339,7 @@ def verify(
     samples: Optional[int] = None,
     cull: Optional[Literal["none", "back"]] = None,
     near: Optional[Union[str, float, Sequence[float]]] = None,
-    shade: Optional[Literal["none", "lambert", "phong"]] = None,
+    shade: Optional[Literal["none", "lambert", "phong", "edl", "lambert+edl", "phong+edl"]] = None,
     light: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     sky: Optional[Union[str, float, Sequence[float]]] = None,
     reflect: Optional[float] = None,
@@ -439,8 +440,9 @@ def verify(
         --deep]
     cull: back: leave out what faces away; or none [none]
     near: nothing nearer to the camera is drawn [1e-4 of the scene's diagonal]
-    shade: none (colours as they are), lambert (matt) or phong (with a highlight) [phong; none for maps of what
-        has colours]
+    shade: none (colours as they are), lambert (matt), phong (with a highlight), or edl (eye-dome lighting:
+        darker where what is around is nearer, by up to so many stops as stand behind it, edl:4); lambert+edl
+        and phong+edl are both [phong; none for maps of what has colours]
     light: a light: X,Y,Z, the direction towards it, in the scene; camera:X,Y,Z, likewise, but it moves with the
         camera (right, up, towards you); head, at your eye; each with its colour :R,G,B behind it or without,
         and a direction then with the radius of its disc, :2deg, for soft shadows with --accumulate; lamp:X,Y,Z,
@@ -538,7 +540,7 @@ def judge(
     samples: Optional[int] = None,
     cull: Optional[Literal["none", "back"]] = None,
     near: Optional[Union[str, float, Sequence[float]]] = None,
-    shade: Optional[Literal["none", "lambert", "phong"]] = None,
+    shade: Optional[Literal["none", "lambert", "phong", "edl", "lambert+edl", "phong+edl"]] = None,
     light: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     sky: Optional[Union[str, float, Sequence[float]]] = None,
     reflect: Optional[float] = None,
@@ -1024,8 +1026,9 @@ def judge_intermediates(
         --deep]
     cull: back: leave out what faces away; or none [none]
     near: nothing nearer to the camera is drawn [1e-4 of the scene's diagonal]
-    shade: none (colours as they are), lambert (matt) or phong (with a highlight) [phong; none for maps of what
-        has colours]
+    shade: none (colours as they are), lambert (matt), phong (with a highlight), or edl (eye-dome lighting:
+        darker where what is around is nearer, by up to so many stops as stand behind it, edl:4); lambert+edl
+        and phong+edl are both [phong; none for maps of what has colours]
     light: a light: X,Y,Z, the direction towards it, in the scene; camera:X,Y,Z, likewise, but it moves with the
         camera (right, up, towards you); head, at your eye; each with its colour :R,G,B behind it or without,
         and a direction then with the radius of its disc, :2deg, for soft shadows with --accumulate; lamp:X,Y,Z,
@@ -1112,7 +1115,7 @@ def explain(
     samples: Optional[int] = None,
     cull: Optional[Literal["none", "back"]] = None,
     near: Optional[Union[str, float, Sequence[float]]] = None,
-    shade: Optional[Literal["none", "lambert", "phong"]] = None,
+    shade: Optional[Literal["none", "lambert", "phong", "edl", "lambert+edl", "phong+edl"]] = None,
     light: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     sky: Optional[Union[str, float, Sequence[float]]] = None,
     reflect: Optional[float] = None,
@@ -1209,8 +1212,9 @@ def explain(
         --deep]
     cull: back: leave out what faces away; or none [none]
     near: nothing nearer to the camera is drawn [1e-4 of the scene's diagonal]
-    shade: none (colours as they are), lambert (matt) or phong (with a highlight) [phong; none for maps of what
-        has colours]
+    shade: none (colours as they are), lambert (matt), phong (with a highlight), or edl (eye-dome lighting:
+        darker where what is around is nearer, by up to so many stops as stand behind it, edl:4); lambert+edl
+        and phong+edl are both [phong; none for maps of what has colours]
     light: a light: X,Y,Z, the direction towards it, in the scene; camera:X,Y,Z, likewise, but it moves with the
         camera (right, up, towards you); head, at your eye; each with its colour :R,G,B behind it or without,
         and a direction then with the radius of its disc, :2deg, for soft shadows with --accumulate; lamp:X,Y,Z,
@@ -1771,7 +1775,7 @@ def gradient(
     samples: Optional[int] = None,
     cull: Optional[Literal["none", "back"]] = None,
     near: Optional[Union[str, float, Sequence[float]]] = None,
-    shade: Optional[Literal["none", "lambert", "phong"]] = None,
+    shade: Optional[Literal["none", "lambert", "phong", "edl", "lambert+edl", "phong+edl"]] = None,
     light: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     sky: Optional[Union[str, float, Sequence[float]]] = None,
     reflect: Optional[float] = None,
@@ -1861,8 +1865,9 @@ def gradient(
         --deep]
     cull: back: leave out what faces away; or none [none]
     near: nothing nearer to the camera is drawn [1e-4 of the scene's diagonal]
-    shade: none (colours as they are), lambert (matt) or phong (with a highlight) [phong; none for maps of what
-        has colours]
+    shade: none (colours as they are), lambert (matt), phong (with a highlight), or edl (eye-dome lighting:
+        darker where what is around is nearer, by up to so many stops as stand behind it, edl:4); lambert+edl
+        and phong+edl are both [phong; none for maps of what has colours]
     light: a light: X,Y,Z, the direction towards it, in the scene; camera:X,Y,Z, likewise, but it moves with the
         camera (right, up, towards you); head, at your eye; each with its colour :R,G,B behind it or without,
         and a direction then with the radius of its disc, :2deg, for soft shadows with --accumulate; lamp:X,Y,Z,

@@ -373,7 +373,8 @@ class ShotLight(ctypes.Structure):
         ("sun_radius_deg", c_float * MAX_LIGHTS),
         ("sky", c_void_p),
         ("reflectance", c_double),
-        ("reserved", c_uint64 * 3),
+        ("dome_stops", c_double),
+        ("reserved", c_uint64 * 2),
     ]
 
 

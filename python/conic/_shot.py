@@ -266,6 +266,7 @@ class HiddenLight(_Struct):
     sun_radius_deg: Tuple[float, ...] = (0.0,) * layouts.MAX_LIGHTS
     sky: Optional[str] = field(default=None, metadata={"apart": True})  #: the file of a picture of all directions
     reflectance: float = 0.0
+    dome_stops: float = 0.0
 
 
 @dataclass

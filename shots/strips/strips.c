@@ -409,6 +409,8 @@ static const char *strips_stranger(const conic_shot_work *work) {
     return "it is a mean of samples";
   if (work->plan.lit != CONIC_LIT_NOT)
     return "its light may be hidden";
+  if (shot->light.dome_stops > 0.0)
+    return "its pixels take light from each other";
   if (work->plan.is_gathered)
     return "its camera's picture is gathered from views";
   if (shot->has_backdrop)

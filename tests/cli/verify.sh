@@ -26,6 +26,7 @@ cat > camera.json << 'END'
  "world_to_camera": [[1, 0, 0, 0], [0, -1, 0, 0], [0, 0, -1, 3], [0, 0, 0, 1]]}
 END
 run 0 verify knot.ply --camera camera.json
+run 0 verify knot.ply --camera camera.json --shade lambert+edl:6
 run 0 verify knot.ply --size 60x40 --samples 3 --json -
 has '"samples": 3,'
 has '"covered_samples": '
