@@ -220,6 +220,12 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        .parse = cli_parse_turntable, .group = "several pictures",
        .intro = "Turns around the scene, parts of them, and both eyes.", .is_usual = 1,
        .acts = {.apart = CLI_FACT(MAP)}},
+      {"path", CLI_TEXT, &job->path_file, "FILE",
+       "pictures along a camera's way, in place of --camera: through the keys of a .json, of which each has time (in "
+       "seconds), place, target, roll and fov (degrees), or through the cameras of a file, one a second; OUT.0000.exr "
+       "…",
+       .is_usual = 1},
+      {"fps", CLI_NUMBER, &job->fps, "N", "pictures of a second of --path [25]", 0.001, 1000, .acts.with = "path"},
       {"frames", CLI_PARSED, &job->frames, "A:B:STEP",
        "only the frames A to B in steps of STEP, or A-BxSTEP; those of --turntable count from 1, those of --view all "
        "from 0 [all]",

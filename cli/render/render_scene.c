@@ -13,6 +13,15 @@
 #include "shots/way.h"
 #include "source/source_samples.h"
 
+static conic_status read_path(cli_session *session, cli_render_job *job) {
+  conic_status status = conic_camera_path_read(session->context, job->path_file, job->camera_size, &job->path);
+  if (status == CONIC_OK)
+    status = conic_camera_path_list(session->context, &job->path, job->fps, &job->cameras);
+  if (status == CONIC_OK)
+    job->n_frames = (int)job->cameras.count;
+  return status;
+}
+
 static conic_status read_views(cli_session *session, cli_render_job *job) {
   const cli_views_wish wish = {job->camera_path, job->view_name, job->camera_size[0], job->camera_size[1]};
   conic_status status = cli_views_read(session, &wish, &job->cameras, &job->i_view);
@@ -40,7 +49,7 @@ conic_status cli_scene_begin(cli_session *session, cli_render_job *job) {
   if (status == CONIC_OK)
     status = cli_shot_again_take_camera(job, &is_taken);
   if (status == CONIC_OK && job->camera_path && !is_taken)
-    status = read_views(session, job);
+    status = job->path_file ? read_path(session, job) : read_views(session, job);
   return status;
 }
 
@@ -71,7 +80,7 @@ static conic_status resolve_lengths(cli_session *session, cli_render_job *job) {
 /* Whether what a source looks like all around decides the camera, or, where it is all in memory, how light falls. */
 static int is_seen_around(const cli_render_job *job) {
   int is_lit = !job->abilities && job->shot.render.shading != CONIC_SHADE_NONE;
-  return !job->is_plain && (!job->camera_path || job->is_turntable || is_lit);
+  return !job->is_plain && (!job->camera_path || job->path_file || job->is_turntable || is_lit);
 }
 
 /* Finds out which way is up, and says so where that was a guess. */
@@ -109,6 +118,10 @@ conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
   if (status == CONIC_OK)
     status = stand_upright(session, job);
   job->camera_ms += 1e3 * (cli_seconds() - start);
+  if (status == CONIC_OK && job->path_file && !job->path.has_up) {
+    conic_camera_path_stand(&job->path, job->is_up_given ? job->framing.up : conic_source_measure(job->source)->up);
+    status = conic_camera_path_list(session->context, &job->path, job->fps, &job->cameras);
+  }
   if (status == CONIC_OK)
     cli_lights_settle(job);
   if (status == CONIC_OK && cli_effects_check_open(session, job) != CLI_DONE)
@@ -118,6 +131,7 @@ conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
 
 void cli_scene_release(cli_session *session, cli_render_job *job) {
   conic_cameras_release(session->context, &job->cameras);
+  conic_camera_path_release(session->context, &job->path);
   conic_sky_destroy(job->sky);
   conic_shot_rest(&job->shot, job->source);
   conic_motion_destroy(job->accumulating.motion);

@@ -8,6 +8,7 @@
 #include "cli/scene/shot_job.h"
 #include "cli/scene/top_job.h"
 #include "cli/team_report.h"
+#include "core/cameras/camera_path.h"
 #include "core/files/sha256.h"
 #include "core/pictures/cryptomatte.h"
 
@@ -54,10 +55,13 @@ typedef struct cli_render_job {
   const char *camera_path;      /* null: framed */
   const char *view_name;        /* --view; null: the file's only one */
   int is_view_side;             /* it named a side of the scene, and the framing is of that */
-  int camera_size[2];           /* that the file's cameras are brought to; 0: the file's */
-  int is_every_view;            /* --view all: each is a frame */
-  conic_cameras cameras;        /* the file's */
-  size_t i_view;                /* of these, the one that is drawn, or was last: */
+  const char *path_file;        /* --path: in place of these; null: none */
+  double fps;                   /* frames of a second of it */
+  conic_camera_path path;
+  int camera_size[2];    /* that the file's cameras are brought to; 0: the file's */
+  int is_every_view;     /* --view all: each is a frame */
+  conic_cameras cameras; /* the file's */
+  size_t i_view;         /* of these, the one that is drawn, or was last: */
   conic_camera camera;
   conic_framing framing;
   int is_up_given, is_elevation_given;

@@ -62,6 +62,7 @@ void cli_scene_defaults(cli_render_job *job) {
   job->opening.access = &job->access;
   job->epsilon.value = job->near_z.value = -1.0;
   job->n_frames = job->repeat = 1;
+  job->fps = 25.0;
   job->device.name = "cpu";
   job->shot.planes = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z;
   cli_cut_region_init(&job->top.box);
@@ -327,7 +328,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .parse = cli_parse_near, .acts = {.on = CLI_SURFACES, .apart = CLI_FACT(MAP)}},
       {"shade", CLI_CHOICE, &shading, "HOW",
        "none (colours as they are), lambert (matt), phong (with a highlight), or edl (eye-dome lighting: darker where "
-       "what is around is nearer, by up to so many stops as stand behind it, edl:4); lambert+edl and phong+edl are both "
+       "what is around is nearer, by up to so many stops as stand behind it, edl:4); lambert+edl and phong+edl are "
+       "both "
        "[phong; none for maps of what has colours]",
        .choices = words.shadings, .is_given = &job->is_shade_given, .group = "light and background",
        .intro = "What shines on surfaces, and what is behind them.", .is_usual = 1, .parse_tail = parse_stops,
@@ -398,6 +400,13 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   int answer = parse_all(session, own, n_own, table, (int)(sizeof table / sizeof table[0]), argc, argv, job);
   if (answer != CLI_DONE)
     return answer;
+  if (job->path_file && (job->camera_path || job->view_name || job->is_turntable))
+    return cli_usage("%s: --path brings cameras of its own: not with --camera, --view or --turntable",
+                     session->command);
+  if (job->path_file) {
+    job->camera_path = job->path_file;
+    job->view_name = "all";
+  }
   job->is_view_side &= !job->camera_path;
   if (job->is_view_side)
     job->view_name = NULL;

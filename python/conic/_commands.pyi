@@ -21,8 +21,7 @@ def render(
     view: Union[None, int, str] = None,
     size: Optional[Union[str, Sequence[int]]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
-        "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
-        "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
+        "2dgs-2024", "2dgs-gsplat", "khr-2026", "surface"]] = None,
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     quality: Optional[Literal["draft", "good", "final"]] = None,
     samples: Optional[int] = None,
@@ -41,6 +40,8 @@ def render(
     save_shot: Optional[PathLike] = None,
     no_shot: Optional[bool] = None,
     again: Optional[PathLike] = None,
+    path: Optional[PathLike] = None,
+    fps: Optional[float] = None,
     frames: Optional[Union[str, float, Sequence[float]]] = None,
     resumable: Optional[bool] = None,
     resume: Optional[PathLike] = None,
@@ -76,7 +77,6 @@ def render(
     color_by: Optional[PathLike] = None,
     ramp: Optional[Union[str, float, Sequence[float]]] = None,
     where: Optional[PathLike] = None,
-    place: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     error: Optional[float] = None,
     budget: Optional[Union[int, str]] = None,
     cache: Optional[PathLike] = None,
@@ -101,8 +101,7 @@ def render(
 ) -> Any:
     """Draws a scene; with the same options, the bits are those of `conic render`.
 
-    `scene`: what :func:`open` gives, :class:`Splats`, :class:`Mesh`, :class:`Gaussians`, a path, an array (N, 3) of
-    points, or a list of these.
+    `scene`: what :func:`open` gives, :class:`Splats`, :class:`Mesh`, :class:`Gaussians`, a path, or a list of these.
     `camera`: a :class:`Camera`, or a file of cameras, of which `view` names one; without, all of the scene is framed.
     `planes`: of "rgba", "Z", "N", "albedo", "weight", "count", "id", "P", of Gaussian scenes "T", "medianZ",
     "inverseZ", "last", "doubt"; "ao", "shadow" (rgba and Z). `profile`: how a Gaussian scene is composited. `output`:
@@ -135,9 +134,13 @@ def render(
     no_shot: leave out of .exr, .png and .tif what they say of how they were made
     again: draw again what a picture says that it was drawn from, to the bit; other options change that. Inputs
         are looked for beside it, here, and among those that are given
-    turntable: N pictures around the scene: OUT.0001.exr …, or as OUT_%04d.exr or OUT_####.exr says
-    frames: only the frames A to B in steps of STEP, or A-BxSTEP; those of --turntable count from 1, those of
-        --view all from 0 [all]
+    turntable: N pictures around the scene: OUT.0001.exr …, or as OUT_%04d.exr says
+    path: pictures along a camera's way, in place of --camera: through the keys of a .json, of which each has
+        time (in seconds), place, target, roll and fov (degrees), or through the cameras of a file, one a
+        second; OUT.0000.exr …
+    fps: pictures of a second of --path [25]
+    frames: only the frames A to B in steps of STEP; those of --turntable count from 1, those of --view all from
+        0 [all]
     resumable: keep beside the first OUT what is finished, so that --resume can go on after any end: frames in
         OUT.frames, of one --accumulate the sums in OUT.sums, and of one .exr larger than half of --memory the
         strips in OUT.strips and OUT.part
@@ -184,8 +187,7 @@ def render(
         ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
         from a corner
     azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
-    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat, and
-        surveys]
+    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat]
     fov: field of view across the shorter side [40]
     zoom: multiplies the focal length: 2 shows the middle, twice as large [1]
     projection: perspective, orthographic (parallel), fisheye, panorama (all around) or cube (six sides, one
@@ -207,8 +209,6 @@ def render(
         percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
-    place: where an input stands: a shift of 3 numbers, or 12 or 16 of a matrix, row by row, that turns, scales
-        evenly and shifts [as the file has it]
     error: draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a
         .chy, also by how many steps colours may differ: black and white do by 100, and 2 are just visible [0:2]
     budget: draw N splats and triangles at most, those whose error is the least [all]
@@ -220,10 +220,9 @@ def render(
         the points, with patch:D by polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the
         length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
-        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026, inria-2023-aa, mip-2023,
-        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
-        others that take the picture's middle for the camera's principal point do so with any camera where
-        :ignore-center stands behind them [exact]
+        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque
+        splats; inria-2023 and 2dgs-2024 with :ignore-center behind them take the picture's middle for the
+        camera's principal point, as these do [exact]
     quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
         --samples go first [good]
     kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N
@@ -276,17 +275,6 @@ def render(
     """
 
 
-def turntable(
-    scene: AnyScene,
-    n: int = 36,
-    camera: Optional[AnyCamera] = None,
-    **options: Options,
-) -> List[Picture]:
-    """Draws `n` pictures around a scene, evenly apart: :func:`render` with `turntable=n`, whose other options are taken
-    by their names, such as `size=(640, 480)`. Returns a list of :class:`Picture`, (H, W, 4) and (H, W) as there.
-    """
-
-
 def verify(
     scene: AnyScene,
     camera: Optional[AnyCamera] = None,
@@ -321,15 +309,13 @@ def verify(
     color_by: Optional[PathLike] = None,
     ramp: Optional[Union[str, float, Sequence[float]]] = None,
     where: Optional[PathLike] = None,
-    place: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     error: Optional[float] = None,
     budget: Optional[Union[int, str]] = None,
     cache: Optional[PathLike] = None,
     only: Optional[Literal["triangles", "surfels"]] = None,
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
-        "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
-        "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
+        "2dgs-2024", "2dgs-gsplat", "khr-2026", "surface"]] = None,
     quality: Optional[Literal["draft", "good", "final"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
@@ -386,8 +372,7 @@ def verify(
         ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
         from a corner
     azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
-    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat, and
-        surveys]
+    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat]
     fov: field of view across the shorter side [40]
     zoom: multiplies the focal length: 2 shows the middle, twice as large [1]
     projection: perspective, orthographic (parallel), fisheye, panorama (all around) or cube (six sides, one
@@ -409,8 +394,6 @@ def verify(
         percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
-    place: where an input stands: a shift of 3 numbers, or 12 or 16 of a matrix, row by row, that turns, scales
-        evenly and shifts [as the file has it]
     error: draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a
         .chy, also by how many steps colours may differ: black and white do by 100, and 2 are just visible [0:2]
     budget: draw N splats and triangles at most, those whose error is the least [all]
@@ -422,10 +405,9 @@ def verify(
         the points, with patch:D by polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the
         length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
-        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026, inria-2023-aa, mip-2023,
-        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
-        others that take the picture's middle for the camera's principal point do so with any camera where
-        :ignore-center stands behind them [exact]
+        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque
+        splats; inria-2023 and 2dgs-2024 with :ignore-center behind them take the picture's middle for the
+        camera's principal point, as these do [exact]
     quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
         --samples go first [good]
     kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N
@@ -522,15 +504,13 @@ def judge(
     color_by: Optional[PathLike] = None,
     ramp: Optional[Union[str, float, Sequence[float]]] = None,
     where: Optional[PathLike] = None,
-    place: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     error: Optional[float] = None,
     budget: Optional[Union[int, str]] = None,
     cache: Optional[PathLike] = None,
     only: Optional[Literal["triangles", "surfels"]] = None,
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
-        "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
-        "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
+        "2dgs-2024", "2dgs-gsplat", "khr-2026", "surface"]] = None,
     quality: Optional[Literal["draft", "good", "final"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
@@ -972,8 +952,7 @@ def judge_intermediates(
         ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
         from a corner
     azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
-    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat, and
-        surveys]
+    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat]
     fov: field of view across the shorter side [40]
     zoom: multiplies the focal length: 2 shows the middle, twice as large [1]
     projection: perspective, orthographic (parallel), fisheye, panorama (all around) or cube (six sides, one
@@ -995,8 +974,6 @@ def judge_intermediates(
         percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
-    place: where an input stands: a shift of 3 numbers, or 12 or 16 of a matrix, row by row, that turns, scales
-        evenly and shifts [as the file has it]
     error: draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a
         .chy, also by how many steps colours may differ: black and white do by 100, and 2 are just visible [0:2]
     budget: draw N splats and triangles at most, those whose error is the least [all]
@@ -1008,10 +985,9 @@ def judge_intermediates(
         the points, with patch:D by polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the
         length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
-        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026, inria-2023-aa, mip-2023,
-        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
-        others that take the picture's middle for the camera's principal point do so with any camera where
-        :ignore-center stands behind them [exact]
+        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque
+        splats; inria-2023 and 2dgs-2024 with :ignore-center behind them take the picture's middle for the
+        camera's principal point, as these do [exact]
     quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
         --samples go first [good]
     kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N
@@ -1097,15 +1073,13 @@ def explain(
     color_by: Optional[PathLike] = None,
     ramp: Optional[Union[str, float, Sequence[float]]] = None,
     where: Optional[PathLike] = None,
-    place: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     error: Optional[float] = None,
     budget: Optional[Union[int, str]] = None,
     cache: Optional[PathLike] = None,
     only: Optional[Literal["triangles", "surfels"]] = None,
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
-        "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
-        "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
+        "2dgs-2024", "2dgs-gsplat", "khr-2026", "surface"]] = None,
     quality: Optional[Literal["draft", "good", "final"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
@@ -1158,8 +1132,7 @@ def explain(
         ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
         from a corner
     azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
-    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat, and
-        surveys]
+    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat]
     fov: field of view across the shorter side [40]
     zoom: multiplies the focal length: 2 shows the middle, twice as large [1]
     projection: perspective, orthographic (parallel), fisheye, panorama (all around) or cube (six sides, one
@@ -1181,8 +1154,6 @@ def explain(
         percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
-    place: where an input stands: a shift of 3 numbers, or 12 or 16 of a matrix, row by row, that turns, scales
-        evenly and shifts [as the file has it]
     error: draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a
         .chy, also by how many steps colours may differ: black and white do by 100, and 2 are just visible [0:2]
     budget: draw N splats and triangles at most, those whose error is the least [all]
@@ -1194,10 +1165,9 @@ def explain(
         the points, with patch:D by polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the
         length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
-        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026, inria-2023-aa, mip-2023,
-        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
-        others that take the picture's middle for the camera's principal point do so with any camera where
-        :ignore-center stands behind them [exact]
+        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque
+        splats; inria-2023 and 2dgs-2024 with :ignore-center behind them take the picture's middle for the
+        camera's principal point, as these do [exact]
     quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
         --samples go first [good]
     kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N
@@ -1390,8 +1360,6 @@ def prepare(
     columns: Optional[Union[str, float, Sequence[float]]] = None,
     colors: Optional[Literal["file", "display", "linear"]] = None,
     allow_outside: Optional[bool] = None,
-    timeout: Optional[float] = None,
-    deadline: Optional[float] = None,
     where: Optional[PathLike] = None,
     plain: Optional[bool] = None,
     bake: Optional[Union[str, float, Sequence[float]]] = None,
@@ -1416,8 +1384,6 @@ def prepare(
     colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
         ones, as conic's .ply has them: file, display, linear [file]
     allow_outside: a glTF may name buffers and pictures outside of its folder
-    timeout: of a URL, a server that is silent for so long is asked again, up to 4 times [15]
-    deadline: of a URL, no more is read after so many seconds; where not all has come, nothing is written
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
     plain: every point becomes an ellipse; else those that lie on no surface become round dots
@@ -1495,8 +1461,6 @@ def layers(
     columns: Optional[Union[str, float, Sequence[float]]] = None,
     colors: Optional[Literal["file", "display", "linear"]] = None,
     allow_outside: Optional[bool] = None,
-    timeout: Optional[float] = None,
-    deadline: Optional[float] = None,
     color_by: Optional[PathLike] = None,
     ramp: Optional[Union[str, float, Sequence[float]]] = None,
     up: Optional[Union[str, float, Sequence[float]]] = None,
@@ -1525,8 +1489,6 @@ def layers(
     colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
         ones, as conic's .ply has them: file, display, linear [file]
     allow_outside: a glTF may name buffers and pictures outside of its folder
-    timeout: of a URL, a server that is silent for so long is asked again, up to 4 times [15]
-    deadline: of a URL, no more is read after so many seconds; where not all has come, nothing is written
     color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value
         in the file by its name; auto: rgb, or else intensity [auto]
     ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain, viridis, magma, turbo or
@@ -1611,8 +1573,6 @@ def csg(
     columns: Optional[Union[str, float, Sequence[float]]] = None,
     colors: Optional[Literal["file", "display", "linear"]] = None,
     allow_outside: Optional[bool] = None,
-    timeout: Optional[float] = None,
-    deadline: Optional[float] = None,
 ) -> Scene:
     """Joins two solids (`union=True`), intersects them (`intersection`), or takes one from the other (`difference`).
 
@@ -1628,8 +1588,6 @@ def csg(
     colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
         ones, as conic's .ply has them: file, display, linear [file]
     allow_outside: a glTF may name buffers and pictures outside of its folder
-    timeout: of a URL, a server that is silent for so long is asked again, up to 4 times [15]
-    deadline: of a URL, no more is read after so many seconds; where not all has come, nothing is written
     threads: how many threads compute; the results never depend on it [0: all]
     """
 
@@ -1757,15 +1715,13 @@ def gradient(
     color_by: Optional[PathLike] = None,
     ramp: Optional[Union[str, float, Sequence[float]]] = None,
     where: Optional[PathLike] = None,
-    place: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     error: Optional[float] = None,
     budget: Optional[Union[int, str]] = None,
     cache: Optional[PathLike] = None,
     only: Optional[Literal["triangles", "surfels"]] = None,
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
-        "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
-        "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
+        "2dgs-2024", "2dgs-gsplat", "khr-2026", "surface"]] = None,
     quality: Optional[Literal["draft", "good", "final"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
@@ -1811,8 +1767,7 @@ def gradient(
         ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
         from a corner
     azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
-    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat, and
-        surveys]
+    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat]
     fov: field of view across the shorter side [40]
     zoom: multiplies the focal length: 2 shows the middle, twice as large [1]
     projection: perspective, orthographic (parallel), fisheye, panorama (all around) or cube (six sides, one
@@ -1834,8 +1789,6 @@ def gradient(
         percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
-    place: where an input stands: a shift of 3 numbers, or 12 or 16 of a matrix, row by row, that turns, scales
-        evenly and shifts [as the file has it]
     error: draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a
         .chy, also by how many steps colours may differ: black and white do by 100, and 2 are just visible [0:2]
     budget: draw N splats and triangles at most, those whose error is the least [all]
@@ -1847,10 +1800,9 @@ def gradient(
         the points, with patch:D by polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the
         length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
-        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026, inria-2023-aa, mip-2023,
-        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
-        others that take the picture's middle for the camera's principal point do so with any camera where
-        :ignore-center stands behind them [exact]
+        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque
+        splats; inria-2023 and 2dgs-2024 with :ignore-center behind them take the picture's middle for the
+        camera's principal point, as these do [exact]
     quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
         --samples go first [good]
     kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N

@@ -27,6 +27,8 @@ CASES = {
                ["--show", "clusters:clusters.pfm"], ["--show", "boxes:boxes.pfm"], ["--show", "boxes@2:boxes.pfm"], ["--show", "boxes@99:boxes.pfm"],
                ["--show", "legend:legend.pfm"], ["--show", "legend"]],
     "--turntable": [["--turntable", "2"]],
+    "--path": [["--path", "keys.json", "--fps", "2"], ["--path", "keys.json", "--view", "0"]],
+    "--fps": [["--fps", "2"]],
     "--frames": [["--frames", "2"]],
     "--resumable": [["--resumable"]],
     "--resume": [["--resume", "p.pfm"]],
@@ -84,7 +86,8 @@ CASES = {
     "--samples": [["--samples", "3"]],
     "--cull": [["--cull", "back"]],
     "--near": [["--near", "100"]],
-    "--shade": [["--shade", "lambert"], ["--shade", "none"]],
+    "--shade": [["--shade", "lambert"], ["--shade", "none"], ["--shade", "edl"], ["--shade", "phong+edl:2"],
+                ["--shade", "lambert:2"]],
     "--light": [["--light", "1,0,0"], ["--light", "none"], ["--light", "lamp:1,1,1"]],
     "--sky": [["--sky", "1,0,0"]],
     "--reflect": [["--reflect", "0.5", "--sky", "texture.png", "--ao", "2"], ["--reflect", "0.5"]],
@@ -233,6 +236,8 @@ def make_sources():
     pathlib.Path("camera.json").write_text(json.dumps({
         "width": 48, "height": 48, "fx": 50, "fy": 50, "cx": 20, "cy": 25,
         "world_to_camera": [[1, 0, 0, 0], [0, -1, 0, 0.2], [0, 0, -1, 3], [0, 0, 0, 1]]}))
+    pathlib.Path("keys.json").write_text(json.dumps({"keys": [
+        {"time": 0, "place": [0, 1, 3], "target": [0, 0, 0]}, {"time": 1, "place": [3, 1, 0]}]}))
     pathlib.Path("motion.json").write_text(json.dumps({"frames": {"0": [[[1, 0, 0, 0.4], [0, 1, 0, 0], [0, 0, 1, 0]]]}}))
     return {"splats": "splats.ply", "raw": "raw.las", "mesh": "mesh.obj", "textured": "textured.obj",
             "octree": "octree.cot", "levels": "levels.lpc", "hybrid": "hybrid.chy", "gaussians": "gaussians.spz"}

@@ -164,6 +164,9 @@ int main(int argc, char **argv) {
   seeds_sums(set, context);
   seeds_strips(set, context);
   seeds_branches(set);
+  seeds_text(set, "camera_path", "keys",
+             "{\"up\": [0, 1, 0], \"keys\": [{\"time\": 0, \"place\": [0, 1, 5], \"target\": [0, 0, 0], \"fov\": 50}, "
+             "{\"time\": 1.5, \"place\": [3, 1, 4], \"roll\": -10}, {\"time\": 2, \"target\": [1, 0, 0]}]}");
   seeds_text(set, "motion", "json",
              "[{\"frame\": 1, \"matrix\": [[1,0,0,0.25],[0,1,0,0],[0,0,1,0],[0,0,0,1]]},\n"
              " {\"input\": 2, \"frame\": -1.5, \"file\": \"walk.0001.ply\"}]\n");
