@@ -17,6 +17,14 @@ int cli_shell_is_terminal(FILE *stream);
 int cli_shell_has_cursor(void);
 int cli_shell_columns(void);
 
+/* Whether there is a program of that name. */
+int cli_shell_has_program(const char *name);
+/* Starts a program, of whose words the last is null, and returns where to its input is written; null: it cannot be. A
+ * program that does not read any more makes writing fail, and ends nothing. The second waits for it, and returns its
+ * exit code, or -1. */
+FILE *cli_shell_pipe_to(const char *const *words);
+int cli_shell_pipe_end(FILE *pipe);
+
 /* The most memory that this process has held, as the system counts it. */
 unsigned long long cli_shell_peak_bytes(void);
 

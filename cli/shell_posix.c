@@ -3,6 +3,7 @@
 #include <sys/ioctl.h>
 #include <sys/resource.h>
 #include <sys/utsname.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #if defined(__GLIBC__)
@@ -33,6 +34,33 @@ void cli_shell_catch(void (*on_wish)(int signal_number), void (*on_closed_pipe)(
     catch_signal(wishes[i], on_wish);
   catch_signal(SIGPIPE, on_closed_pipe);
   signal(SIGXFSZ, SIG_IGN); /* a file that may not grow further is a failed write, after which is cleaned up */
+}
+
+int cli_shell_has_program(const char *name) {
+  char command[256];
+  int n = snprintf(command, sizeof command, "command -v %s > /dev/null 2>&1", name);
+  return n < (int)sizeof command && system(command) == 0;
+}
+
+FILE *cli_shell_pipe_to(const char *const *words) {
+  char command[16384] = "exec";
+  size_t n = strlen(command);
+  for (; *words; words++) {
+    n += (size_t)snprintf(command + n, sizeof command - n, " '");
+    for (const char *at = *words; *at && n + 16 < sizeof command; at++)
+      n += (size_t)snprintf(command + n, sizeof command - n, *at == '\'' ? "'\\''" : "%c", *at);
+    if (n + 16 >= sizeof command)
+      return NULL;
+    n += (size_t)snprintf(command + n, sizeof command - n, "'");
+  }
+  FILE *pipe = popen(command, "w");
+  signal(SIGPIPE, SIG_IGN);
+  return pipe;
+}
+
+int cli_shell_pipe_end(FILE *pipe) {
+  int code = pclose(pipe);
+  return code != -1 && WIFEXITED(code) ? WEXITSTATUS(code) : -1;
 }
 
 int cli_shell_is_terminal(FILE *stream) {

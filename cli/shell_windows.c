@@ -70,6 +70,27 @@ void cli_shell_catch(void (*on_wish)(int signal_number), void (*on_closed_pipe)(
     SetConsoleCtrlHandler(on_console_event, TRUE);
 }
 
+int cli_shell_has_program(const char *name) {
+  char command[256];
+  int n = snprintf(command, sizeof command, "where %s > NUL 2>&1", name);
+  return n < (int)sizeof command && system(command) == 0;
+}
+
+FILE *cli_shell_pipe_to(const char *const *words) {
+  char command[8192] = "";
+  size_t n = 0;
+  for (; *words; words++) {
+    if (strchr(*words, '"') || n + strlen(*words) + 8 > sizeof command)
+      return NULL;
+    n += (size_t)snprintf(command + n, sizeof command - n, n ? " \"%s\"" : "%s", *words);
+  }
+  return _popen(command, "wb");
+}
+
+int cli_shell_pipe_end(FILE *pipe) {
+  return _pclose(pipe);
+}
+
 int cli_shell_is_terminal(FILE *stream) {
   DWORD mode;
   return GetConsoleMode((HANDLE)_get_osfhandle(fileno(stream)), &mode) != 0;

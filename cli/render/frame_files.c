@@ -1,6 +1,7 @@
 #include "cli/render/frame_files.h"
 
 #include "cli/outputs.h"
+#include "cli/render/film.h"
 #include "cli/render/frames.h"
 #include "cli/scene/background_options.h"
 #include "cli/scene/surfaces_drawn.h"
@@ -357,6 +358,8 @@ conic_status cli_frame_files_write(cli_session *session, cli_render_job *job, co
     status = show_legend(session, job, image);
   if (status == CONIC_OK)
     status = cli_frame_write(session, job, image, i_frame);
+  if (status == CONIC_OK)
+    status = cli_film_add(session, job, image);
   for (beside what = 0; what < N_BESIDE && status == CONIC_OK; what++)
     status = write_beside(session, job, what, camera, image, i_frame);
   return status;

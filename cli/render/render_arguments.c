@@ -1,5 +1,6 @@
 #include "cli/command.h"
 #include "cli/render/fill_shot.h"
+#include "cli/render/film.h"
 #include "cli/render/kept_frames.h"
 #include "cli/render/sample_options.h"
 #include "cli/render/shot_again.h"
@@ -117,8 +118,11 @@ int cli_render_views_check(const cli_session *session, cli_render_job *job) {
 static int check_outputs(const cli_session *session, cli_render_job *job, int is_colors_given) {
   const char *paths[N_PATHS];
   int answer = CLI_DONE;
-  if (!session->host && job->n_outputs == 0 && !job->deep_path && !job->overdraw_path && !job->clusters_path &&
-      !job->boxes_path && !job->progressive_path && !job->making.save_path)
+  answer = cli_film_check(session, job);
+  if (answer != CLI_DONE)
+    return answer;
+  if (!session->host && !job->film.path && job->n_outputs == 0 && !job->deep_path && !job->overdraw_path &&
+      !job->clusters_path && !job->boxes_path && !job->progressive_path && !job->making.save_path)
     return cli_usage("render: no output; give one with -o OUT.exr, OUT.png, …");
   if (job->is_shown_twice)
     return cli_usage("render: --show writes each of overdraw, clusters, boxes and legend once; draw again for another");
@@ -181,7 +185,8 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
   int memory_mib = USUAL_MIB, occlusion = CONIC_OCCLUSION_AUTO, is_colors_given = 0;
   const cli_option own[] = {
       {"o", CLI_PARSED, job, "OUT",
-       "where the picture goes: .exr, .png, .tif, .jpg, .pfm …; - is standard output; exr:- and pfm:NAME say of what "
+       "where the picture goes: .exr, .png, .tif, .jpg, .pfm …, or of several .mp4, .webm or .gif, a film by ffmpeg; - "
+       "is standard output; exr:- and pfm:NAME say of what "
        "kind "
        "that is, or a name without an ending [png]; may be repeated",
        .parse = parse_output, .may_repeat = 1, .group = "output",
@@ -225,7 +230,12 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        "seconds), place, target, roll and fov (degrees), or through the cameras of a file, one a second; OUT.0000.exr "
        "…",
        .is_usual = 1},
-      {"fps", CLI_NUMBER, &job->fps, "N", "pictures of a second of --path [25]", 0.001, 1000, .acts.with = "path"},
+      {"fps", CLI_NUMBER, &job->fps, "N", "pictures of a second of --path, and of a film [25]", 0.001, 1000,
+       .acts.with = "path|o=.mp4|o=.webm|o=.gif"},
+      {"film", CLI_PARSED, &job->film, "BITS[:Q]",
+       "how -o OUT.mp4 or OUT.webm codes colours: by 8 or 10 bits, and with the constant quality Q, 0 to 63, less is "
+       "better [8:17; of .webm 8:24]",
+       .parse = cli_parse_film, .acts.with = "o=.mp4|o=.webm"},
       {"frames", CLI_PARSED, &job->frames, "A:B:STEP",
        "only the frames A to B in steps of STEP, or A-BxSTEP; those of --turntable count from 1, those of --view all "
        "from 0 [all]",

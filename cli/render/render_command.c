@@ -3,6 +3,7 @@
 #include "cli/command.h"
 #include "cli/host_keeps.h"
 #include "cli/render/fill_shot.h"
+#include "cli/render/film.h"
 #include "cli/render/frame_files.h"
 #include "cli/render/frames.h"
 #include "cli/render/kept_frames.h"
@@ -305,7 +306,7 @@ static int render_scene(cli_session *session, cli_render_job *job) {
   if (status == CONIC_OK)
     status = cli_kept_frames_begin(session, job);
   if (status == CONIC_OK)
-    status = cli_units_agree(job, render_frames(session, job, &image, repeats));
+    status = cli_units_agree(job, cli_film_end(session, job, render_frames(session, job, &image, repeats)));
   if (status == CONIC_OK)
     status = cli_kept_frames_end(session, job);
   if (status == CONIC_OK)

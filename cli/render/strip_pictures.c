@@ -29,7 +29,8 @@ static int is_plain_exr(const cli_session *session, const cli_render_job *job) {
 
 int cli_may_be_in_strips(const cli_session *session, const cli_render_job *job) {
   return is_plain_exr(session, job) && job->repeat == 1 && !job->top.is_wanted && !job->accumulating.n_samples &&
-         !job->is_exposure_automatic && !conic_shot_is_lit(&job->shot) && job->shot.light.dome_stops == 0.0 && !job->shot.view.may_be_coarser;
+         !job->is_exposure_automatic && !conic_shot_is_lit(&job->shot) && job->shot.light.dome_stops == 0.0 &&
+         !job->shot.view.may_be_coarser;
 }
 
 int cli_is_in_strips(const cli_session *session, const cli_render_job *job, const conic_camera *camera) {

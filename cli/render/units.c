@@ -33,7 +33,7 @@ int cli_units_choose(const cli_session *session, cli_render_job *job) {
   set_units(job, CONIC_UNITS_NONE, NULL);
   if (!cli_team_is_shared(session) || job->top.is_wanted)
     return CLI_DONE;
-  if (n >= team->count || (n > 1 && !job->accumulating.n_samples))
+  if (!job->film.path && (n >= team->count || (n > 1 && !job->accumulating.n_samples)))
     set_units(job, CONIC_UNITS_FRAMES, team);
   else if (job->accumulating.n_samples)
     set_units(job, CONIC_UNITS_SAMPLES, team);

@@ -1,6 +1,7 @@
 #include "cli/scene/background_options.h"
 
 #include "cli/scene/light_options.h"
+#include "core/image/image_common.h"
 #include "shots/backdrop.h"
 
 /* Chosen by eye: darker than what is lit, so that plaster stands out, and lighter than the shades of scans. Gaussian
@@ -29,6 +30,21 @@ int cli_backdrop_is_studio(const cli_render_job *job) {
   return !job->is_plain && !job->is_background_given;
 }
 
+conic_status cli_backdrop_show(cli_session *session, const cli_render_job *job, const conic_image *image,
+                               conic_image *shown) {
+  conic_status status =
+      conic_image_allocate(session->context, image->width, image->height, 1u << CONIC_PLANE_RGBA, shown);
+  if (status != CONIC_OK)
+    return status;
+  memcpy(shown->planes[CONIC_PLANE_RGBA], image->planes[CONIC_PLANE_RGBA],
+         conic_image_pixels(image) * 4 * sizeof(float));
+  if (cli_backdrop_is_studio(job) && image->is_display)
+    conic_backdrop_put(night, night, 1.0f, shown);
+  else if (cli_backdrop_is_studio(job))
+    conic_backdrop_put(studio_top, studio_bottom, 1.0f, shown);
+  return CONIC_OK;
+}
+
 conic_status cli_backdrop_write(cli_session *session, const cli_render_job *job, const char *path,
                                 const conic_image *image) {
   /* Not what others compose: EXR, TIFF, PFM and the like. */
@@ -37,16 +53,10 @@ conic_status cli_backdrop_write(cli_session *session, const cli_render_job *job,
   conic_image alone, shown = *image;
   if (!cli_backdrop_is_studio(job) || !cli_output_is_one_of(job, path, to_look_at) || !rgba)
     return cli_planes_write(session, job, path, image);
-  conic_status status =
-      conic_image_allocate(session->context, image->width, image->height, 1u << CONIC_PLANE_RGBA, &alone);
+  conic_status status = cli_backdrop_show(session, job, image, &alone);
   if (status != CONIC_OK)
     return status;
   shown.planes[CONIC_PLANE_RGBA] = alone.planes[CONIC_PLANE_RGBA];
-  memcpy(alone.planes[CONIC_PLANE_RGBA], rgba, (size_t)image->width * (size_t)image->height * 4 * sizeof *rgba);
-  if (image->is_display)
-    conic_backdrop_put(night, night, 1.0f, &alone);
-  else
-    conic_backdrop_put(studio_top, studio_bottom, 1.0f, &alone);
   status = cli_planes_write(session, job, path, &shown);
   conic_image_release(session->context, &alone);
   return status;

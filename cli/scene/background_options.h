@@ -10,6 +10,11 @@ int cli_parse_background(const char *text, void *value);
 conic_status cli_backdrop_write(cli_session *session, const cli_render_job *job, const char *path,
                                 const conic_image *image);
 
+/* A copy of a picture's colours as it is shown, with that background or its own; the caller releases it. Errors:
+ * MEMORY. */
+conic_status cli_backdrop_show(cli_session *session, const cli_render_job *job, const conic_image *image,
+                               conic_image *shown);
+
 /* Whether files to look at get that background. */
 int cli_backdrop_is_studio(const cli_render_job *job);
 

@@ -19,6 +19,16 @@ typedef struct cli_frames {
   int first, last, step, is_given;
 } cli_frames;
 
+/* A film that frames become (cli/render/film.h). */
+typedef struct cli_film {
+  const char *path;        /* null: none */
+  int kind, bits, quality; /* of its ending; of a colour, 8 or 10, or 0: not said; constant: less is better */
+  int width, height;
+  FILE *pipe;                  /* once it has begun, to the program that makes it, */
+  struct conic_output *output; /* in this file */
+  char frames[1024];           /* without that program: where frames go */
+} cli_film;
+
 /* Two eyes. */
 typedef struct cli_stereo {
   double distance;    /* from one to the other, in world units; 0: there is one */
@@ -82,6 +92,7 @@ typedef struct cli_render_job {
   int is_turntable;
   cli_top_job top; /* --camera top */
   cli_frames frames;
+  cli_film film;
   int is_warned;       /* that a picture is empty */
   int is_error_warned; /* that --error is not kept */
   int is_alpha_warned; /* that alpha is not shown */

@@ -42,6 +42,7 @@ def render(
     again: Optional[PathLike] = None,
     path: Optional[PathLike] = None,
     fps: Optional[float] = None,
+    film: Optional[Union[str, float, Sequence[float]]] = None,
     frames: Optional[Union[str, float, Sequence[float]]] = None,
     resumable: Optional[bool] = None,
     resume: Optional[PathLike] = None,
@@ -118,8 +119,9 @@ def render(
 
     Options:
 
-    output: where the picture goes: .exr, .png, .tif, .jpg, .pfm …; - is standard output; exr:- and pfm:NAME say
-        of what kind that is, or a name without an ending [png]; may be repeated
+    output: where the picture goes: .exr, .png, .tif, .jpg, .pfm …, or of several .mp4, .webm or .gif, a film by
+        ffmpeg; - is standard output; exr:- and pfm:NAME say of what kind that is, or a name without an ending
+        [png]; may be repeated
     exr: numbers of an .exr: float, or half for rgba, N and albedo; and how it is compressed: zip, none, rle,
         zips, piz, or pxr24, which loses bits of floats, as in half,piz [float,zip]
     tone: how files of 8 and 16 bits show what is brighter than white: srgb (as white), filmic (Hable's curve),
@@ -138,7 +140,9 @@ def render(
     path: pictures along a camera's way, in place of --camera: through the keys of a .json, of which each has
         time (in seconds), place, target, roll and fov (degrees), or through the cameras of a file, one a
         second; OUT.0000.exr …
-    fps: pictures of a second of --path [25]
+    fps: pictures of a second of --path, and of a film [25]
+    film: how -o OUT.mp4 or OUT.webm codes colours: by 8 or 10 bits, and with the constant quality Q, 0 to 63,
+        less is better [8:17; of .webm 8:24]
     frames: only the frames A to B in steps of STEP; those of --turntable count from 1, those of --view all from
         0 [all]
     resumable: keep beside the first OUT what is finished, so that --resume can go on after any end: frames in

@@ -93,4 +93,48 @@ run 0 render moved.xyz --camera behind.json -o behind.pfm
 run 0 render moved.xyz --camera camera.json -o out.d/turned.pfm --turntable 2
 run 0 diff behind.pfm out.d/turned.0002.pfm --max-abs 1e-4
 
+# Paths: frames from 0, whatever else is drawn of them; --frames and --resume take them as others.
+rm -f out.d/*
+printf '{"keys": [{"time": 0, "place": [0, 0, 6], "target": [0, 0, 0]}, {"time": 2, "place": [6, 0, 0]}]}' > keys.json
+turn 0 --path keys.json --fps 2 -o out.d/p.pfm
+cp out.d/p.0003.pfm third.pfm
+holds p.0000.pfm p.0001.pfm p.0002.pfm p.0003.pfm p.0004.pfm
+turn 0 --path keys.json --fps 2 -o out.d/p.pfm --frames 1:4:2 --resumable
+cmp third.pfm out.d/p.0003.pfm || fail "--frames changes a frame of a path"
+holds p.0001.pfm p.0003.pfm p.pfm.1-4-2.frames
+turn 2 --path keys.json --turntable 2 -o out.d/p.pfm
+turn 2 --path keys.json --camera camera.json -o out.d/p.pfm
+printf '{"keys": [{"time": 0}]}' > short.json
+turn 3 --path short.json -o out.d/p.pfm
+
+# Films: what ffmpeg is told and given, by one that keeps both; one that ends early; and where there is none.
+mkdir bin none
+cat > bin/ffmpeg << 'END'
+#!/bin/sh
+for word; do last=$word; done
+echo "$*" > words
+cat > "$last"
+END
+chmod +x bin/ffmpeg
+for tool in sh cat; do ln -s "$(command -v $tool)" none; done
+whole=$PATH
+PATH=$PWD/bin:$whole
+turn 0 --path keys.json --fps 2 -o "out.d/it's.mp4" --film 10:20
+[[ $(stat -c %s "out.d/it's.mp4") -eq $((5 * 24 * 16 * 6)) ]] || fail "ffmpeg gets $(stat -c %s out.d/*) bytes"
+grep -q -- '-video_size 24x16 -framerate 2 .*-crf 20 .*yuv420p10le .*-f mp4' words || fail "ffmpeg is told $(cat words)"
+holds "it's.mp4"
+turn 0 --turntable 3 -o out.d/f.gif -o out.d/f%d.pfm
+holds f.gif f1.pfm f2.pfm f3.pfm
+turn 2 -o out.d/f.mp4
+turn 2 --turntable 3 -o out.d/f.gif --film 8
+turn 2 --turntable 3 -o out.d/f.mp4 --resumable
+printf '#!/bin/sh\nexit 1\n' > bin/ffmpeg
+run 4 render knot.ply --size 400x300 --turntable 3 -o out.d/f.mp4
+[[ $(wc -l < err) -eq 1 ]] || fail "an end that breaks: $(cat err)"
+PATH=$PWD/none
+turn 0 --turntable 2 -o out.d/f.webm
+PATH=$whole
+grep -q "ffmpeg -framerate 25 -start_number 1 -i 'out.d/f.%04d.png' 'out.d/f.webm'" err || fail "without ffmpeg: $(cat err)"
+holds f.0001.png f.0002.png
+
 [[ $failures -eq 0 ]]

@@ -29,6 +29,7 @@ CASES = {
     "--turntable": [["--turntable", "2"]],
     "--path": [["--path", "keys.json", "--fps", "2"], ["--path", "keys.json", "--view", "0"]],
     "--fps": [["--fps", "2"]],
+    "--film": [["--film", "10:20"]],
     "--frames": [["--frames", "2"]],
     "--resumable": [["--resumable"]],
     "--resume": [["--resume", "p.pfm"]],

@@ -1,0 +1,16 @@
+/* Frames as a film, by the program ffmpeg, which takes them through a pipe. */
+#pragma once
+
+#include "cli/scene/render_job.h"
+
+/* Takes an output that is a film away from those that are pictures, and sees to it that one can be made. Without
+ * ffmpeg, frames take its place, and what makes a film of them is said. Returns CLI_DONE, or CLI_USAGE after a message.
+ */
+int cli_film_check(const cli_session *session, cli_render_job *job);
+/* BITS, or BITS:QUALITY, into a cli_film. */
+int cli_parse_film(const char *text, void *value);
+
+/* Adds a frame, where there is a film. Errors: MEMORY, IO. */
+conic_status cli_film_add(cli_session *session, cli_render_job *job, const conic_image *image);
+/* Completes it, or drops it unless `status` is OK; returns that, or what went wrong. */
+conic_status cli_film_end(cli_session *session, cli_render_job *job, conic_status status);
