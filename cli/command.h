@@ -36,8 +36,8 @@ typedef struct cli_command {
 } cli_command;
 
 extern const cli_command cli_make, cli_prepare, cli_octree, cli_layer, cli_merge, cli_cut, cli_mls, cli_csg, cli_hybrid,
-    cli_render, cli_sheet, cli_diff, cli_info, cli_verify, cli_judge, cli_explain, cli_gradient, cli_conformance,
-    cli_chart, cli_bench, cli_devices, cli_convert, cli_project;
+    cli_render, cli_sheet, cli_contact, cli_diff, cli_info, cli_verify, cli_judge, cli_explain, cli_gradient,
+    cli_conformance, cli_chart, cli_bench, cli_devices, cli_convert, cli_project;
 
 /* Runs what the arguments say, argv[0] being the program's name. Returns its exit code. */
 int cli_program(int argc, char **argv, const struct conic_executor *team);

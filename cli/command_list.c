@@ -5,9 +5,9 @@
 #include "core/base/nearest_word.h"
 
 static const cli_command *const commands[] = {
-    &cli_make,    &cli_prepare, &cli_octree,   &cli_layer,       &cli_merge, &cli_cut,   &cli_mls,    &cli_csg,
-    &cli_hybrid,  &cli_convert, &cli_render,   &cli_sheet,       &cli_diff,  &cli_info,  &cli_verify, &cli_judge,
-    &cli_explain, &cli_project, &cli_gradient, &cli_conformance, &cli_chart, &cli_bench, &cli_devices};
+    &cli_make,   &cli_prepare, &cli_octree,  &cli_layer,    &cli_merge,       &cli_cut,   &cli_mls,   &cli_csg,
+    &cli_hybrid, &cli_convert, &cli_render,  &cli_sheet,    &cli_contact,     &cli_diff,  &cli_info,  &cli_verify,
+    &cli_judge,  &cli_explain, &cli_project, &cli_gradient, &cli_conformance, &cli_chart, &cli_bench, &cli_devices};
 
 enum { N_COMMANDS = sizeof commands / sizeof commands[0] };
 

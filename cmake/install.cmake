@@ -11,6 +11,11 @@ if(TARGET conic_mpi)
 endif()
 install(DIRECTORY include/conic DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+if(UNIX AND NOT APPLE) # how file managers know conic's files, and draw them
+  install(FILES packaging/conic.thumbnailer DESTINATION ${CMAKE_INSTALL_DATADIR}/thumbnailers COMPONENT program)
+  install(FILES packaging/conic-mime.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/mime/packages RENAME conic.xml
+    COMPONENT program)
+endif()
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
 
 # Two sets, since only who links the static library needs its dependencies found again.

@@ -12,9 +12,8 @@ static conic_status append_name(conic_context *context, const char *folder, cons
   return status;
 }
 
-static int is_of_points(const char *name) {
-  static const char *const endings[] = {"las", "laz", "ply", "e57", "pcd", "ptx", "pts", "xyz"};
-  for (size_t i = 0; i < sizeof endings / sizeof *endings && name[0] != '.'; i++)
+static int is_listed(const char *name, const char *const *endings) {
+  for (size_t i = 0; endings[i] && name[0] != '.'; i++)
     if (conic_file_has_ending(name, endings[i]))
       return 1;
   return 0;
@@ -45,8 +44,9 @@ static conic_status sort_names(conic_context *context, char *row, size_t n_bytes
   return status;
 }
 
-conic_status cli_points_folder_list(conic_context *context, const char *path, char **names, size_t *n_bytes,
-                                    size_t *room) {
+conic_status cli_points_folder_list(conic_context *context, const char *path, const char *const *endings, char **names,
+                                    size_t *n_bytes, size_t *room) {
+  static const char *const of_points[] = {"las", "laz", "ply", "e57", "pcd", "ptx", "pts", "xyz", NULL};
   conic_disk_folder folder;
   conic_disk_entry found;
   size_t n = 0, begun = *n_bytes;
@@ -56,12 +56,13 @@ conic_status cli_points_folder_list(conic_context *context, const char *path, ch
   if (!conic_disk_open_folder(path, &folder))
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read the directory", path);
   for (const char *name; status == CONIC_OK && (name = conic_disk_next_name(&folder));)
-    if (is_of_points(name)) {
+    if (is_listed(name, endings ? endings : of_points)) {
       status = append_name(context, path, name, names, n_bytes, room);
       n++;
     }
   conic_disk_close_folder(&folder);
   if (status == CONIC_OK && n == 0)
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: it is a directory without files of points", path);
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: it is a directory without files%s", path,
+                      endings ? " that are shown" : " of points");
   return status == CONIC_OK ? sort_names(context, *names + begun, *n_bytes - begun, n) : status;
 }

@@ -37,8 +37,8 @@ conic_status cli_points_stream(cli_session *session, const char *path, const con
 conic_status cli_points_read(cli_session *session, const char *path, const conic_read_options *options,
                              conic_model *model);
 
-/* Appends the path to `names`, with a zero at its end; for a folder that is no hierarchy, appends each of its files of
- * points, in the order of their names' bytes. The caller releases the names. Errors: INPUT (the folder has none),
- * MEMORY. */
-conic_status cli_points_folder_list(conic_context *context, const char *path, char **names, size_t *n_bytes,
-                                    size_t *room);
+/* Appends the path to `names`, with a zero at its end; for a folder that is no hierarchy, appends each of its files
+ * whose names end so, or of points where that is null, in the order of their names' bytes. The caller releases the
+ * names. Errors: INPUT (the folder has none), MEMORY. */
+conic_status cli_points_folder_list(conic_context *context, const char *path, const char *const *endings, char **names,
+                                    size_t *n_bytes, size_t *room);

@@ -29,7 +29,7 @@ static conic_status list_own(cli_points_share *share, const char *const *inputs,
     if (share->team && strcmp(inputs[i], "-") == 0)
       status = conic_fail(context, CONIC_ERROR_INPUT, "several processes cannot share standard input; give files");
     else
-      status = cli_points_folder_list(context, inputs[i], &share->names, n_bytes, &room);
+      status = cli_points_folder_list(context, inputs[i], NULL, &share->names, n_bytes, &room);
   return status;
 }
 

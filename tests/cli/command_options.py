@@ -66,6 +66,7 @@ CASES = {
     "csg": {"--timeout": "3", "--deadline": "9", "--allow-outside": None, "-o": "more.ply", "--union": None, "--intersection": None, "--difference": None, "-k": "6", "--cutoff": "2",
             "--columns": "y,x,z", "--colors": "linear"},
     "devices": {},
+    "contact": {"-o": "more.png", "--size": "20", "--columns": "1"},
     "sheet": {"-o": "more.png", "--plan": None, "--facade": "40", "--section": "0,0.2:1,0.7:0.1", "--beyond": "0.1",
               "--scale": "1:30", "--dpi": "60", "--gsd": "0.1", "--paper": "A5", "--title": "a title", "--grid": "0.3",
               "--unit": "ft", "--north": "20", "--memory": "64", "--ao": "4", "--shadow": None},
@@ -95,6 +96,7 @@ STAGES = [
     "project g.spz --size 20x20 --profile gsplat-1.6 -o out.npz",
     "sheet splats.ply --section 0,0.3:1,0.4 -o out.png --dpi 40", "sheet mesh.obj --plan --facade 0 -o out.tif --dpi 40",
     "sheet g.spz -o out.pdf --dpi 40", "sheet raw.xyz --scale 1:20 -o out.png --dpi 40",
+    "contact mesh.obj texture.png g.spz -o out.png --size 24",
     "convert g.ply -o out.spz", "convert g.spz -o out.ply", "convert g.spz -o out.splat",
 ]
 # Of the commands whose outcome is a measurement: what is refused.
