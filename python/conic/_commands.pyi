@@ -21,7 +21,8 @@ def render(
     view: Union[None, int, str] = None,
     size: Optional[Union[str, Sequence[int]]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
-        "2dgs-2024", "2dgs-gsplat", "khr-2026", "surface"]] = None,
+        "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
+        "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     quality: Optional[Literal["draft", "good", "final"]] = None,
     samples: Optional[int] = None,
@@ -78,6 +79,7 @@ def render(
     color_by: Optional[PathLike] = None,
     ramp: Optional[Union[str, float, Sequence[float]]] = None,
     where: Optional[PathLike] = None,
+    place: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     error: Optional[float] = None,
     budget: Optional[Union[int, str]] = None,
     cache: Optional[PathLike] = None,
@@ -102,7 +104,8 @@ def render(
 ) -> Any:
     """Draws a scene; with the same options, the bits are those of `conic render`.
 
-    `scene`: what :func:`open` gives, :class:`Splats`, :class:`Mesh`, :class:`Gaussians`, a path, or a list of these.
+    `scene`: what :func:`open` gives, :class:`Splats`, :class:`Mesh`, :class:`Gaussians`, a path, an array (N, 3) of
+    points, or a list of these.
     `camera`: a :class:`Camera`, or a file of cameras, of which `view` names one; without, all of the scene is framed.
     `planes`: of "rgba", "Z", "N", "albedo", "weight", "count", "id", "P", of Gaussian scenes "T", "medianZ",
     "inverseZ", "last", "doubt"; "ao", "shadow" (rgba and Z). `profile`: how a Gaussian scene is composited. `output`:
@@ -136,15 +139,15 @@ def render(
     no_shot: leave out of .exr, .png and .tif what they say of how they were made
     again: draw again what a picture says that it was drawn from, to the bit; other options change that. Inputs
         are looked for beside it, here, and among those that are given
-    turntable: N pictures around the scene: OUT.0001.exr …, or as OUT_%04d.exr says
+    turntable: N pictures around the scene: OUT.0001.exr …, or as OUT_%04d.exr or OUT_####.exr says
     path: pictures along a camera's way, in place of --camera: through the keys of a .json, of which each has
         time (in seconds), place, target, roll and fov (degrees), or through the cameras of a file, one a
         second; OUT.0000.exr …
     fps: pictures of a second of --path, and of a film [25]
     film: how -o OUT.mp4 or OUT.webm codes colours: by 8 or 10 bits, and with the constant quality Q, 0 to 63,
         less is better [8:17; of .webm 8:24]
-    frames: only the frames A to B in steps of STEP; those of --turntable count from 1, those of --view all from
-        0 [all]
+    frames: only the frames A to B in steps of STEP, or A-BxSTEP; those of --turntable count from 1, those of
+        --view all from 0 [all]
     resumable: keep beside the first OUT what is finished, so that --resume can go on after any end: frames in
         OUT.frames, of one --accumulate the sums in OUT.sums, and of one .exr larger than half of --memory the
         strips in OUT.strips and OUT.part
@@ -191,7 +194,8 @@ def render(
         ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
         from a corner
     azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
-    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat]
+    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat, and
+        surveys]
     fov: field of view across the shorter side [40]
     zoom: multiplies the focal length: 2 shows the middle, twice as large [1]
     projection: perspective, orthographic (parallel), fisheye, panorama (all around) or cube (six sides, one
@@ -213,6 +217,8 @@ def render(
         percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
+    place: where an input stands: a shift of 3 numbers, or 12 or 16 of a matrix, row by row, that turns, scales
+        evenly and shifts [as the file has it]
     error: draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a
         .chy, also by how many steps colours may differ: black and white do by 100, and 2 are just visible [0:2]
     budget: draw N splats and triangles at most, those whose error is the least [all]
@@ -224,9 +230,10 @@ def render(
         the points, with patch:D by polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the
         length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
-        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque
-        splats; inria-2023 and 2dgs-2024 with :ignore-center behind them take the picture's middle for the
-        camera's principal point, as these do [exact]
+        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026, inria-2023-aa, mip-2023,
+        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
+        others that take the picture's middle for the camera's principal point do so with any camera where
+        :ignore-center stands behind them [exact]
     quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
         --samples go first [good]
     kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N
@@ -279,6 +286,17 @@ def render(
     """
 
 
+def turntable(
+    scene: AnyScene,
+    n: int = 36,
+    camera: Optional[AnyCamera] = None,
+    **options: Options,
+) -> List[Picture]:
+    """Draws `n` pictures around a scene, evenly apart: :func:`render` with `turntable=n`, whose other options are taken
+    by their names, such as `size=(640, 480)`. Returns a list of :class:`Picture`, (H, W, 4) and (H, W) as there.
+    """
+
+
 def verify(
     scene: AnyScene,
     camera: Optional[AnyCamera] = None,
@@ -313,13 +331,15 @@ def verify(
     color_by: Optional[PathLike] = None,
     ramp: Optional[Union[str, float, Sequence[float]]] = None,
     where: Optional[PathLike] = None,
+    place: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     error: Optional[float] = None,
     budget: Optional[Union[int, str]] = None,
     cache: Optional[PathLike] = None,
     only: Optional[Literal["triangles", "surfels"]] = None,
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
-        "2dgs-2024", "2dgs-gsplat", "khr-2026", "surface"]] = None,
+        "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
+        "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
     quality: Optional[Literal["draft", "good", "final"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
@@ -376,7 +396,8 @@ def verify(
         ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
         from a corner
     azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
-    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat]
+    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat, and
+        surveys]
     fov: field of view across the shorter side [40]
     zoom: multiplies the focal length: 2 shows the middle, twice as large [1]
     projection: perspective, orthographic (parallel), fisheye, panorama (all around) or cube (six sides, one
@@ -398,6 +419,8 @@ def verify(
         percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
+    place: where an input stands: a shift of 3 numbers, or 12 or 16 of a matrix, row by row, that turns, scales
+        evenly and shifts [as the file has it]
     error: draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a
         .chy, also by how many steps colours may differ: black and white do by 100, and 2 are just visible [0:2]
     budget: draw N splats and triangles at most, those whose error is the least [all]
@@ -409,9 +432,10 @@ def verify(
         the points, with patch:D by polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the
         length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
-        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque
-        splats; inria-2023 and 2dgs-2024 with :ignore-center behind them take the picture's middle for the
-        camera's principal point, as these do [exact]
+        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026, inria-2023-aa, mip-2023,
+        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
+        others that take the picture's middle for the camera's principal point do so with any camera where
+        :ignore-center stands behind them [exact]
     quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
         --samples go first [good]
     kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N
@@ -508,13 +532,15 @@ def judge(
     color_by: Optional[PathLike] = None,
     ramp: Optional[Union[str, float, Sequence[float]]] = None,
     where: Optional[PathLike] = None,
+    place: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     error: Optional[float] = None,
     budget: Optional[Union[int, str]] = None,
     cache: Optional[PathLike] = None,
     only: Optional[Literal["triangles", "surfels"]] = None,
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
-        "2dgs-2024", "2dgs-gsplat", "khr-2026", "surface"]] = None,
+        "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
+        "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
     quality: Optional[Literal["draft", "good", "final"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
@@ -956,7 +982,8 @@ def judge_intermediates(
         ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
         from a corner
     azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
-    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat]
+    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat, and
+        surveys]
     fov: field of view across the shorter side [40]
     zoom: multiplies the focal length: 2 shows the middle, twice as large [1]
     projection: perspective, orthographic (parallel), fisheye, panorama (all around) or cube (six sides, one
@@ -978,6 +1005,8 @@ def judge_intermediates(
         percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
+    place: where an input stands: a shift of 3 numbers, or 12 or 16 of a matrix, row by row, that turns, scales
+        evenly and shifts [as the file has it]
     error: draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a
         .chy, also by how many steps colours may differ: black and white do by 100, and 2 are just visible [0:2]
     budget: draw N splats and triangles at most, those whose error is the least [all]
@@ -989,9 +1018,10 @@ def judge_intermediates(
         the points, with patch:D by polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the
         length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
-        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque
-        splats; inria-2023 and 2dgs-2024 with :ignore-center behind them take the picture's middle for the
-        camera's principal point, as these do [exact]
+        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026, inria-2023-aa, mip-2023,
+        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
+        others that take the picture's middle for the camera's principal point do so with any camera where
+        :ignore-center stands behind them [exact]
     quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
         --samples go first [good]
     kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N
@@ -1077,13 +1107,15 @@ def explain(
     color_by: Optional[PathLike] = None,
     ramp: Optional[Union[str, float, Sequence[float]]] = None,
     where: Optional[PathLike] = None,
+    place: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     error: Optional[float] = None,
     budget: Optional[Union[int, str]] = None,
     cache: Optional[PathLike] = None,
     only: Optional[Literal["triangles", "surfels"]] = None,
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
-        "2dgs-2024", "2dgs-gsplat", "khr-2026", "surface"]] = None,
+        "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
+        "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
     quality: Optional[Literal["draft", "good", "final"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
@@ -1136,7 +1168,8 @@ def explain(
         ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
         from a corner
     azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
-    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat]
+    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat, and
+        surveys]
     fov: field of view across the shorter side [40]
     zoom: multiplies the focal length: 2 shows the middle, twice as large [1]
     projection: perspective, orthographic (parallel), fisheye, panorama (all around) or cube (six sides, one
@@ -1158,6 +1191,8 @@ def explain(
         percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
+    place: where an input stands: a shift of 3 numbers, or 12 or 16 of a matrix, row by row, that turns, scales
+        evenly and shifts [as the file has it]
     error: draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a
         .chy, also by how many steps colours may differ: black and white do by 100, and 2 are just visible [0:2]
     budget: draw N splats and triangles at most, those whose error is the least [all]
@@ -1169,9 +1204,10 @@ def explain(
         the points, with patch:D by polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the
         length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
-        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque
-        splats; inria-2023 and 2dgs-2024 with :ignore-center behind them take the picture's middle for the
-        camera's principal point, as these do [exact]
+        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026, inria-2023-aa, mip-2023,
+        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
+        others that take the picture's middle for the camera's principal point do so with any camera where
+        :ignore-center stands behind them [exact]
     quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
         --samples go first [good]
     kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N
@@ -1364,6 +1400,8 @@ def prepare(
     columns: Optional[Union[str, float, Sequence[float]]] = None,
     colors: Optional[Literal["file", "display", "linear"]] = None,
     allow_outside: Optional[bool] = None,
+    timeout: Optional[float] = None,
+    deadline: Optional[float] = None,
     where: Optional[PathLike] = None,
     plain: Optional[bool] = None,
     bake: Optional[Union[str, float, Sequence[float]]] = None,
@@ -1388,6 +1426,8 @@ def prepare(
     colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
         ones, as conic's .ply has them: file, display, linear [file]
     allow_outside: a glTF may name buffers and pictures outside of its folder
+    timeout: of a URL, a server that is silent for so long is asked again, up to 4 times [15]
+    deadline: of a URL, no more is read after so many seconds; where not all has come, nothing is written
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
     plain: every point becomes an ellipse; else those that lie on no surface become round dots
@@ -1465,6 +1505,8 @@ def layers(
     columns: Optional[Union[str, float, Sequence[float]]] = None,
     colors: Optional[Literal["file", "display", "linear"]] = None,
     allow_outside: Optional[bool] = None,
+    timeout: Optional[float] = None,
+    deadline: Optional[float] = None,
     color_by: Optional[PathLike] = None,
     ramp: Optional[Union[str, float, Sequence[float]]] = None,
     up: Optional[Union[str, float, Sequence[float]]] = None,
@@ -1493,6 +1535,8 @@ def layers(
     colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
         ones, as conic's .ply has them: file, display, linear [file]
     allow_outside: a glTF may name buffers and pictures outside of its folder
+    timeout: of a URL, a server that is silent for so long is asked again, up to 4 times [15]
+    deadline: of a URL, no more is read after so many seconds; where not all has come, nothing is written
     color_by: what the points' colours are made of: rgb, intensity, height, classification, normal, or a value
         in the file by its name; auto: rgb, or else intensity [auto]
     ramp: the colours of --color-by: sequential, grey, heat, diverging, terrain, viridis, magma, turbo or
@@ -1577,6 +1621,8 @@ def csg(
     columns: Optional[Union[str, float, Sequence[float]]] = None,
     colors: Optional[Literal["file", "display", "linear"]] = None,
     allow_outside: Optional[bool] = None,
+    timeout: Optional[float] = None,
+    deadline: Optional[float] = None,
 ) -> Scene:
     """Joins two solids (`union=True`), intersects them (`intersection`), or takes one from the other (`difference`).
 
@@ -1592,6 +1638,8 @@ def csg(
     colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
         ones, as conic's .ply has them: file, display, linear [file]
     allow_outside: a glTF may name buffers and pictures outside of its folder
+    timeout: of a URL, a server that is silent for so long is asked again, up to 4 times [15]
+    deadline: of a URL, no more is read after so many seconds; where not all has come, nothing is written
     threads: how many threads compute; the results never depend on it [0: all]
     """
 
@@ -1719,13 +1767,15 @@ def gradient(
     color_by: Optional[PathLike] = None,
     ramp: Optional[Union[str, float, Sequence[float]]] = None,
     where: Optional[PathLike] = None,
+    place: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     error: Optional[float] = None,
     budget: Optional[Union[int, str]] = None,
     cache: Optional[PathLike] = None,
     only: Optional[Literal["triangles", "surfels"]] = None,
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
-        "2dgs-2024", "2dgs-gsplat", "khr-2026", "surface"]] = None,
+        "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
+        "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
     quality: Optional[Literal["draft", "good", "final"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
@@ -1771,7 +1821,8 @@ def gradient(
         ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
         from a corner
     azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
-    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat]
+    elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat, and
+        surveys]
     fov: field of view across the shorter side [40]
     zoom: multiplies the focal length: 2 shows the middle, twice as large [1]
     projection: perspective, orthographic (parallel), fisheye, panorama (all around) or cube (six sides, one
@@ -1793,6 +1844,8 @@ def gradient(
         percentile]
     where: which points are wanted, by their values: 'classification = 2, 9 and not (intensity < 100 or z > 50)'
         [all]
+    place: where an input stands: a shift of 3 numbers, or 12 or 16 of a matrix, row by row, that turns, scales
+        evenly and shifts [as the file has it]
     error: draw as coarsely as keeps the error on the screen below so many pixels; 0: draw all; of meshes and a
         .chy, also by how many steps colours may differ: black and white do by 100, and 2 are just visible [0:2]
     budget: draw N splats and triangles at most, those whose error is the least [all]
@@ -1804,9 +1857,10 @@ def gradient(
         the points, with patch:D by polynomials of degree D, 1 to 4 [3], and with patch:D:H smoother than the
         length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
-        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque
-        splats; inria-2023 and 2dgs-2024 with :ignore-center behind them take the picture's middle for the
-        camera's principal point, as these do [exact]
+        gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026, inria-2023-aa, mip-2023,
+        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
+        others that take the picture's middle for the camera's principal point do so with any camera where
+        :ignore-center stands behind them [exact]
     quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
         --samples go first [good]
     kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N
