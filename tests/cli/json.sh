@@ -132,6 +132,8 @@ write mls-spheres mls_project mls project thin.ply -o clean.ply --type apss
 write mls-thin mls_thin mls thin thin.ply -o thinner.ply --count 4k
 write mls-densify mls_densify mls densify thinner.ply -o dense.ply --spacing 0.7x
 write csg csg csg knot.ply clean.ply -o solid.ply --union
+write sheet sheet sheet knot.ply --plan --section 0,0:1,0 --dpi 20 -o sheet.png
+write contact contact contact knot.ply sheet.png -o contact.png --size 32
 write render render render knot.ply -o knot.exr --aov all --size 256x256
 write render-accumulated render render knot.ply -o accumulated.exr --accumulate 4 --aperture 0.1 --size 64x64
 write render-kept render render knot.ply --turntable 2 -o turn.exr --resumable --resume turn.exr --size 32x32
