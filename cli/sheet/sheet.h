@@ -56,7 +56,7 @@ typedef struct cli_sheet_job {
   int width, height;         /* of the sheet in pixels */
   cli_strokes strokes;
   conic_render_statistics statistics; /* of the panels together */
-  double draw_ms, write_ms;
+  double draw_seconds, write_seconds;
 } cli_sheet_job;
 
 /* What the panels show of an open scene, and which way they look. Errors: ARGUMENT. */

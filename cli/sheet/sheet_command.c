@@ -118,7 +118,7 @@ static conic_status draw_panels(cli_sheet_job *job) {
     status = cli_panel_expose(job, &job->panels[0]);
   for (int i = 0; i < job->n_panels && status == CONIC_OK; i++)
     status = cli_panel_draw(job, &job->panels[i]);
-  job->draw_ms = 1e3 * (cli_seconds() - start);
+  job->draw_seconds = cli_seconds() - start;
   return cli_units_agree(scene, status);
 }
 
@@ -127,7 +127,7 @@ static conic_status write_sheet(cli_sheet_job *job) {
   conic_status status = cli_sheet_letter(job);
   if (status == CONIC_OK)
     status = cli_sheet_write(job);
-  job->write_ms = 1e3 * (cli_seconds() - start);
+  job->write_seconds = cli_seconds() - start;
   if (status == CONIC_OK && !job->statistics.pixels_covered)
     conic_log(job->session->context, CONIC_LOG_WARNING, "%s: the sheet is empty", job->scene.inputs[0]);
   return status;
@@ -155,8 +155,9 @@ static void report_sheet(cli_json *json, const void *cookie) {
   }
   cli_json_close(json);
   cli_json_count(json, "pixels_covered", job->statistics.pixels_covered);
-  cli_json_figures(json, "ms", {"draw", job->draw_ms}, {"write", job->write_ms},
-                   {"total", 1e3 * (cli_seconds() - job->scene.start_seconds)});
+  double total = cli_seconds() - job->scene.start_seconds;
+  cli_json_figures(json, "seconds", {"draw", job->draw_seconds}, {"write", job->write_seconds},
+                   {"other", total - job->draw_seconds - job->write_seconds}, {"total", total});
   cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
 }
 
