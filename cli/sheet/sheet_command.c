@@ -8,7 +8,7 @@
 #include "cli/sheet/sheet.h"
 #include "cli/tell.h"
 #include "core/files/file.h"
-#include "source/top_view.h"
+#include "source/top/top_view.h"
 
 /* --- values --- */
 

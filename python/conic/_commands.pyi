@@ -661,8 +661,9 @@ def judge(
         --deep]
     cull: back: leave out what faces away; or none [none]
     near: nothing nearer to the camera is drawn [1e-4 of the scene's diagonal]
-    shade: none (colours as they are), lambert (matt) or phong (with a highlight) [phong; none for maps of what
-        has colours]
+    shade: none (colours as they are), lambert (matt), phong (with a highlight), or edl (eye-dome lighting:
+        darker where what is around is nearer, by up to so many stops as stand behind it, edl:4); lambert+edl
+        and phong+edl are both [phong; none for maps of what has colours]
     light: a light: X,Y,Z, the direction towards it, in the scene; camera:X,Y,Z, likewise, but it moves with the
         camera (right, up, towards you); head, at your eye; each with its colour :R,G,B behind it or without,
         and a direction then with the radius of its disc, :2deg, for soft shadows with --accumulate; lamp:X,Y,Z,
@@ -740,7 +741,7 @@ def project(
     samples: Optional[int] = None,
     cull: Optional[Literal["none", "back"]] = None,
     near: Optional[Union[str, float, Sequence[float]]] = None,
-    shade: Optional[Literal["none", "lambert", "phong"]] = None,
+    shade: Optional[Literal["none", "lambert", "phong", "edl", "lambert+edl", "phong+edl"]] = None,
     light: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     sky: Optional[Union[str, float, Sequence[float]]] = None,
     reflect: Optional[float] = None,
@@ -827,8 +828,9 @@ def project(
         --deep]
     cull: back: leave out what faces away; or none [none]
     near: nothing nearer to the camera is drawn [1e-4 of the scene's diagonal]
-    shade: none (colours as they are), lambert (matt) or phong (with a highlight) [phong; none for maps of what
-        has colours]
+    shade: none (colours as they are), lambert (matt), phong (with a highlight), or edl (eye-dome lighting:
+        darker where what is around is nearer, by up to so many stops as stand behind it, edl:4); lambert+edl
+        and phong+edl are both [phong; none for maps of what has colours]
     light: a light: X,Y,Z, the direction towards it, in the scene; camera:X,Y,Z, likewise, but it moves with the
         camera (right, up, towards you); head, at your eye; each with its colour :R,G,B behind it or without,
         and a direction then with the radius of its disc, :2deg, for soft shadows with --accumulate; lamp:X,Y,Z,
@@ -927,7 +929,7 @@ def judge_intermediates(
     samples: Optional[int] = None,
     cull: Optional[Literal["none", "back"]] = None,
     near: Optional[Union[str, float, Sequence[float]]] = None,
-    shade: Optional[Literal["none", "lambert", "phong"]] = None,
+    shade: Optional[Literal["none", "lambert", "phong", "edl", "lambert+edl", "phong+edl"]] = None,
     light: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     sky: Optional[Union[str, float, Sequence[float]]] = None,
     reflect: Optional[float] = None,
