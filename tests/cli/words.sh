@@ -134,7 +134,7 @@ done << 'END'
 2|--camera FILE looks anywhere|render s.ply -o a.png --look-at 0,0,0
 2|--azimuth DEG goes around|render s.ply -o a.png --rotate 90
 0|render: --orbit means --turntable|render s.ply -o turn.png -s 16x16 --orbit 2
-2|ffmpeg -framerate 25|render s.ply -o a.png --turntable 2 --fps 25
+2|--path, or -o OUT.mp4|render s.ply -o a.png --turntable 2 --framerate 25
 2|conic cut IN -o OUT --box|render s.ply -o a.png --section 1,0,0
 2|conic cut IN -o OUT --box|render s.ply -o a.png --clip 1,0,0
 2|conic cut IN -o OUT --box|render s.ply -o a.png --crop 1,0,0
