@@ -90,6 +90,8 @@ static conic_status run_samples(accumulating *a, conic_accumulation *sums) {
   options.watch = a->work->keeper && a->work->keeper->watch ? watch : NULL;
   if (a->work->plan.lit == CONIC_LIT_BY_SAMPLE)
     options.sample_planes = 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_NORMAL | 1u << CONIC_PLANE_ALBEDO;
+  if (shot->catchers | shot->holdouts)
+    options.sample_planes |= 1u << CONIC_PLANE_ID;
   if (shot->light.dome_stops > 0.0)
     options.sample_planes |= 1u << CONIC_PLANE_Z;
   return a->work->units == CONIC_UNITS_SAMPLES ? conic_accumulate_together(a->work, &options, sums)

@@ -21,7 +21,8 @@ conic_status conic_stage_composited(const conic_shot_stage *stage, const conic_l
   const conic_shot_work *work = stage->work;
   compositing c = {stage, look->sample};
   const unsigned of_light = 1u << CONIC_PLANE_NORMAL | 1u << CONIC_PLANE_ALBEDO;
-  const conic_surfaces_drawer drawer = {work->plan.lit == CONIC_LIT_NOT ? 0 : of_light, draw_below, &c};
+  const unsigned of_roles = work->shot->catchers | work->shot->holdouts ? 1u << CONIC_PLANE_ID : 0;
+  const conic_surfaces_drawer drawer = {(work->plan.lit == CONIC_LIT_NOT ? 0 : of_light) | of_roles, draw_below, &c};
   return conic_source_draw_among(work->source, work->renderer, look->camera, look->render, look->view, &drawer, image,
                                  statistics);
 }

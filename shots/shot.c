@@ -24,13 +24,16 @@ static const conic_shot_stage *stages_chain(conic_shot_work *work, conic_shot_st
   conic_shot_stage *leaf = &stages[CONIC_MOST_STAGES - 1], *first = leaf;
   *leaf = (conic_shot_stage){.draw = conic_stage_leaf, .leaf = leaf, .work = work};
   int is_lit_below = plan->lit == CONIC_LIT_BY_VIEW || (plan->lit != CONIC_LIT_NOT && plan->is_composited);
+  const int has_roles = (work->shot->catchers | work->shot->holdouts) != 0;
   const struct {
     int is_there;
     conic_status (*draw)(const conic_shot_stage *, const conic_look *, conic_image *, conic_render_statistics *);
   } above[] = {{is_lit_below, conic_stage_lit},
+               {has_roles && (is_lit_below || plan->lit == CONIC_LIT_NOT), conic_stage_roles},
                {plan->is_composited, conic_stage_composited},
                {plan->is_gathered, conic_stage_gathered},
                {plan->lit != CONIC_LIT_NOT && !is_lit_below, conic_stage_lit},
+               {has_roles && plan->lit != CONIC_LIT_NOT && !is_lit_below, conic_stage_roles},
                {work->shot->light.dome_stops > 0.0, conic_stage_domed},
                {plan->is_accumulated, conic_stage_accumulated}};
   for (size_t i = 0; i < sizeof above / sizeof *above; i++) {

@@ -382,6 +382,10 @@ static const conic_shot_row shot_list[] = {
     {CONIC_ROW_DOUBLE, AT(shutter), "frames", "from when to when it is open", IN(-1e5, 1e5)},
     {CONIC_ROW_DOUBLE, AT(frame), "frames", "the moment, for what moves", IN(-1e9, 1e9)},
     {CONIC_ROW_LEFT_OUT, AT(motion), .meaning = "the input whose role is motion"},
+    {CONIC_ROW_UINT64, AT(catchers), NULL, "inputs, as bits, that are seen by what they darken alone",
+     IN(0, 9007199254740992)},
+    {CONIC_ROW_UINT64, AT(holdouts), NULL, "and those that hide what is behind them and are not seen",
+     IN(0, 9007199254740992)},
     RESERVED(reserved)};
 TABLE(shot, set_shot, conic_fault_of_shot)
 #undef S

@@ -17,7 +17,7 @@ unsigned conic_shot_needs(const conic_shot *shot, unsigned planes) {
   if (planes & 1u << CONIC_PLANE_POSITION || (planes & RGBA && shot->light.dome_stops > 0.0) ||
       (shot->n_samples > 0 && conic_focus_is_seen(shot)))
     planes |= Z;
-  if (planes & 1u << CONIC_PLANE_CLUSTER)
+  if (planes & 1u << CONIC_PLANE_CLUSTER || shot->catchers | shot->holdouts)
     planes |= 1u << CONIC_PLANE_ID;
   return planes;
 }
@@ -55,6 +55,12 @@ static const char *find_fault(const conic_source *source, const conic_shot *shot
     return "light is hidden from surfaces, not from Gaussians that are composited";
   if (shot->light.dome_stops > 0.0 && abilities & CONIC_SOURCE_COMPOSITES)
     return "eye-dome lighting is of surfaces, not of Gaussians that are composited";
+  if (shot->catchers && !conic_shot_is_lit(shot))
+    return "a catcher needs light that may be hidden";
+  if (shot->catchers | shot->holdouts && shot->view.samples > 1 && !conic_source_surfaces(source))
+    return "catchers and holdouts have one sample a pixel, of which there may be means";
+  if (shot->catchers | shot->holdouts && abilities & CONIC_SOURCE_COMPOSITES && !conic_source_surfaces(source))
+    return "catchers and holdouts are surfaces";
   if (shot->planes & CONIC_GAUSSIAN_PLANES && !(abilities & CONIC_SOURCE_COMPOSITES))
     return "the planes T, medianZ, inverseZ, last and doubt are of Gaussians that are composited";
   if (shot->planes & 1u << CONIC_PLANE_CLUSTER && !(abilities & CONIC_SOURCE_CLUSTERS))
@@ -73,6 +79,7 @@ conic_status conic_shot_plan_make(const conic_source *source, const conic_render
   plan->is_composited = conic_source_surfaces(source) != NULL;
   plan->lit = lit_how(shot, plan->is_gathered, plan->is_composited);
   plan->planes = conic_shot_needs(shot, shot->planes);
-  plan->has_windows = conic_source_has_windows(source, renderer, shot->view.transparency != CONIC_TRANSPARENCY_NONE);
+  plan->has_windows = conic_source_has_windows(source, renderer, shot->view.transparency != CONIC_TRANSPARENCY_NONE) &&
+                      !(shot->catchers | shot->holdouts);
   return CONIC_OK;
 }

@@ -1,7 +1,7 @@
-/* The stages that draw a shot, one after the other: accumulated, domed, lit, gathered, leaf. Each does one thing to what its
- * next one draws, and leaves out what the plan does without. Views and samples that are lit have the lit stage below
- * the gathered one. Surfaces among Gaussians are composited above the lit stage, and below the gathered one. No stage
- * calls back. */
+/* The stages that draw a shot, one after the other: accumulated, domed, lit, gathered, leaf. Each does one thing to
+ * what its next one draws, and leaves out what the plan does without. Views and samples that are lit have the lit stage
+ * below the gathered one. Above the lit stage inputs get their roles, and surfaces are composited among Gaussians. No
+ * stage calls back. */
 #pragma once
 
 #include "shots/executor.h"
@@ -64,7 +64,7 @@ struct conic_shot_stage {
   conic_shot_work *work;
 };
 
-/* The draw functions of the five. */
+/* The draw functions of the six. */
 conic_status conic_stage_accumulated(const conic_shot_stage *stage, const conic_look *look, conic_image *image,
                                      conic_render_statistics *statistics);
 conic_status conic_stage_domed(const conic_shot_stage *stage, const conic_look *look, conic_image *image,
@@ -73,13 +73,15 @@ conic_status conic_stage_lit(const conic_shot_stage *stage, const conic_look *lo
                              conic_render_statistics *statistics);
 conic_status conic_stage_composited(const conic_shot_stage *stage, const conic_look *look, conic_image *image,
                                     conic_render_statistics *statistics);
+conic_status conic_stage_roles(const conic_shot_stage *stage, const conic_look *look, conic_image *image,
+                               conic_render_statistics *statistics);
 conic_status conic_stage_gathered(const conic_shot_stage *stage, const conic_look *look, conic_image *image,
                                   conic_render_statistics *statistics);
 conic_status conic_stage_leaf(const conic_shot_stage *stage, const conic_look *look, conic_image *image,
                               conic_render_statistics *statistics);
 
 /* The chain of a plan; `stages` has that much room. Returns the first one. */
-enum { CONIC_MOST_STAGES = 6 };
+enum { CONIC_MOST_STAGES = 7 };
 
 /* Whether this process has the picture at the end. */
 int conic_work_has_picture(const conic_shot_work *work);

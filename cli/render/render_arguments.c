@@ -5,6 +5,7 @@
 #include "cli/render/sample_options.h"
 #include "cli/render/shot_again.h"
 #include "cli/scene/light_options.h"
+#include "cli/scene/scene_options.h"
 #include "cli/scene/stereo.h"
 #include "cli/shell.h"
 #include "core/files/file.h"
@@ -302,6 +303,12 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
       {"transparency", CLI_FLAG, &job->is_transparent, NULL,
        "splats let light through as their opacity says, and meshes as the alpha of their materials and pictures",
        .acts = {.on = CLI_FACT(ALPHA), .is_warned = 1}},
+      {"catcher", CLI_PARSED, job, "INPUT", "of an input only the shadows that fall on it: black, and A says how dark",
+       .parse = cli_parse_catcher, .may_repeat = 1,
+       .acts = {.on = CLI_SURFACES, .needs = CLI_FACT(MASKED), .apart = CLI_FACT(MAP) | CLI_FACT(DEEP)}},
+      {"holdout", CLI_PARSED, job, "INPUT", "an input hides what is behind it, and is not seen itself",
+       .parse = cli_parse_holdout, .may_repeat = 1,
+       .acts = {.on = CLI_SURFACES, .apart = CLI_FACT(MAP) | CLI_FACT(DEEP)}},
       {"repeat", CLI_INT, &job->repeat, "N", "draw N times and report the median of the times [1]", 1, 100000,
        .group = "measuring", .intro = "How fast it is.", .acts = {.apart = CLI_FACT(MAP), .is_work = 1}},
       /* Old spellings. */

@@ -35,7 +35,7 @@ int cli_may_be_in_strips(const cli_session *session, const cli_render_job *job) 
 
 int cli_is_in_strips(const cli_session *session, const cli_render_job *job, const conic_camera *camera) {
   return picture_bytes(job, camera) > memory_for(job) / 2 && cli_may_be_in_strips(session, job) &&
-         !conic_shot_is_gathered(&job->shot, job->abilities, camera) &&
+         !conic_shot_is_gathered(&job->shot, job->abilities, camera) && !(job->shot.catchers | job->shot.holdouts) &&
          conic_source_has_windows(job->source, job->renderer, job->is_transparent);
 }
 

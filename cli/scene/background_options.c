@@ -1,6 +1,7 @@
 #include "cli/scene/background_options.h"
 
 #include "cli/scene/light_options.h"
+#include "core/base/color.h"
 #include "core/image/image_common.h"
 #include "shots/backdrop.h"
 
@@ -9,15 +10,30 @@
 static const float studio_top[3] = {0.08f, 0.088f, 0.1f}, studio_bottom[3] = {0.022f, 0.023f, 0.025f};
 static const float night[3] = {0.0f, 0.0f, 0.0f};
 
+/* A name or a code, which says how a colour looks; numbers say what it is. */
+static int is_looked_at(const char *text) {
+  return *text == '#' || (*text >= 'a' && *text <= 'z') || (*text >= 'A' && *text <= 'Z');
+}
+
+void cli_backdrop_settle(cli_render_job *job) {
+  float *const colors[] = {job->shot.render.background, job->shot.backdrop_top, job->shot.backdrop_bottom};
+  const int is_there[] = {job->shot.render.has_background, job->shot.has_backdrop, job->shot.has_backdrop};
+  for (int k = 0; k < 3; k++)
+    for (int c = 0; c < 3 && is_there[k] && job->background_looks >> k & 1; c++)
+      colors[k][c] = (float)conic_srgb_encode((double)colors[k][c]);
+}
+
 int cli_parse_background(const char *text, void *value) {
   cli_render_job *job = value;
   conic_render_options *options = &job->shot.render;
   size_t length = strcspn(text, ":");
   job->is_background_given = 1;
   options->has_background = job->shot.has_backdrop = 0;
+  job->background_looks = is_looked_at(text) ? 3 : 0;
   if (strcmp(text, "none") == 0 || strcmp(text, "transparent") == 0)
     return 1;
   if (text[length]) {
+    job->background_looks |= is_looked_at(text + length + 1) ? 4 : 0;
     job->shot.has_backdrop = 1;
     return cli_parse_color(text, length, job->shot.backdrop_top) &&
            cli_parse_color(text + length + 1, strlen(text + length + 1), job->shot.backdrop_bottom);

@@ -20,3 +20,7 @@ int cli_backdrop_is_studio(const cli_render_job *job);
 
 /* The key "background" of the statistics. */
 void cli_backdrop_report(cli_json *json, const cli_render_job *job);
+
+/* Gaussian pictures have display values: names and codes of colours become these, once it is known that there are
+ * Gaussians. */
+void cli_backdrop_settle(cli_render_job *job);

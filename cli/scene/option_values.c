@@ -67,6 +67,16 @@ int cli_parse_place(const char *text, void *value) {
   return 1;
 }
 
+int cli_parse_catcher(const char *text, void *value) {
+  cli_render_job *job = value;
+  return *text && job->n_catchers < CLI_MOST_PLACES && (job->catchers[job->n_catchers++] = text);
+}
+
+int cli_parse_holdout(const char *text, void *value) {
+  cli_render_job *job = value;
+  return *text && job->n_holdouts < CLI_MOST_PLACES && (job->holdouts[job->n_holdouts++] = text);
+}
+
 int cli_parse_exposure(const char *text, void *value) {
   cli_render_job *job = value;
   job->is_exposure_automatic = strcmp(text, "auto") == 0;

@@ -119,6 +119,9 @@ typedef struct cli_render_job {
 
   /* What is drawn. */
   conic_source_options opening;
+  int background_looks; /* bits: the background, and the top and bottom of a backdrop, were given by name or code */
+  const char *catchers[CLI_MOST_PLACES], *holdouts[CLI_MOST_PLACES]; /* inputs' names */
+  int n_catchers, n_holdouts;
   const char *places[CLI_MOST_PLACES]; /* FILE=MATRIX, of which `place` becomes the opening's */
   int n_places;
   char place[CLI_PLACE_ROOM];

@@ -3,6 +3,7 @@
 #include "cli/color_options.h"
 #include "cli/host_keeps.h"
 #include "cli/outputs.h"
+#include "cli/scene/background_options.h"
 #include "cli/scene/scene_options.h"
 #include "cli/scene/views.h"
 
@@ -92,10 +93,9 @@ static int check_each_value(const cli_session *session, const cli_scene_words *w
   return CLI_DONE;
 }
 
-/* Which input a FILE=MATRIX is of: by its name, or by the last part of it where no other input has the same; -1: none.
- */
-static int find_placed(const cli_render_job *job, const char *text, const char *equals) {
-  const size_t length = (size_t)(equals - text);
+/* Which input a text of so many letters names: by its name, or by the last part of it where no other input has the
+ * same; -1: none. */
+static int find_input(const cli_render_job *job, const char *text, size_t length) {
   int found = -1, n_found = 0;
   for (int i = 0; i < job->n_inputs; i++) {
     const char *name = job->inputs[i], *slash = strrchr(name, '/');
@@ -114,7 +114,7 @@ static int settle_places(const cli_session *session, cli_render_job *job) {
   size_t used = 0;
   for (int k = 0; k < job->n_places; k++) {
     const char *text = job->places[k], *equals = strrchr(text, '=');
-    const int i = find_placed(job, text, equals);
+    const int i = find_input(job, text, (size_t)(equals - text));
     if (i < 0)
       return cli_usage("%s: --place %.*s: it is none of the inputs", session->command, (int)(equals - text), text);
     used += (size_t)snprintf(job->place + used, CLI_PLACE_ROOM - used, "%s%d:%s", k ? ";" : "", i, equals + 1);
@@ -123,6 +123,17 @@ static int settle_places(const cli_session *session, cli_render_job *job) {
   }
   if (job->n_places)
     job->opening.place = job->place;
+  return CLI_DONE;
+}
+
+static int settle_roles(const cli_session *session, const cli_render_job *job, const char *option,
+                        const char *const *names, int n, uint64_t *inputs) {
+  for (int k = 0; k < n; k++) {
+    const int i = find_input(job, names[k], strlen(names[k]));
+    if (i < 0 || i >= 53)
+      return cli_usage("%s: --%s %s: it is none of the first 53 inputs", session->command, option, names[k]);
+    *inputs |= 1ull << i;
+  }
   return CLI_DONE;
 }
 
@@ -136,12 +147,18 @@ int cli_scene_check(const cli_session *session, cli_scene_words *words, cli_rend
     answer = check_colors(session, words, job);
   if (answer == CLI_DONE)
     answer = settle_places(session, job);
+  if (answer == CLI_DONE)
+    answer = settle_roles(session, job, "catcher", job->catchers, job->n_catchers, &job->shot.catchers);
+  if (answer == CLI_DONE)
+    answer = settle_roles(session, job, "holdout", job->holdouts, job->n_holdouts, &job->shot.holdouts);
   if (answer != CLI_DONE)
     return answer;
   job->is_every_view = cli_views_are_all(job->view_name);
   job->opening.as = job->is_patch ? CONIC_AS_PATCHES : (conic_representation)words->as;
   job->opening.is_whole = words->is_colored_whole;
   job->abilities = cli_kept_abilities(session, job->inputs, (size_t)job->n_inputs, &job->opening);
+  if (job->abilities & CONIC_SOURCE_COMPOSITES)
+    cli_backdrop_settle(job);
   if (job->abilities & CONIC_SOURCE_CLUSTERS) /* of which any part may be drawn, unless --memory says less */
     job->access.memory_bytes = 0;
   job->opening.is_whole =

@@ -40,6 +40,9 @@ int cli_parse_exposure(const char *text, void *value);
 int cli_parse_eye(const char *text, void *eye);
 /* FILE=MATRIX into a job's places, */
 int cli_parse_place(const char *text, void *value);
+/* INPUT into a job's catchers, and its holdouts, */
+int cli_parse_catcher(const char *text, void *value);
+int cli_parse_holdout(const char *text, void *value);
 /* rgba,Z,N … or all, and in pictures cryptomatte, into a job. */
 int cli_parse_planes(const char *text, void *value);
 

@@ -88,7 +88,12 @@ typedef struct conic_shot {
   double shutter[2];     /* frames from the shot's own, from when to when it is open */
   double frame;          /* the shot's own, for the motion */
   conic_motion *motion;  /* of the source's inputs; null: they rest. The caller's */
-  uint64_t reserved[8];
+
+  /* Inputs, as bits 1 << number, whose surfaces hide what is behind them and are not seen. Of catchers the picture has
+   * the darkening: black, with A = 1 − what is left of the luminance of their light. They need light that is hidden,
+   * and both one sample a pixel, unless Gaussians are before them. */
+  uint64_t catchers, holdouts;
+  uint64_t reserved[6];
 } conic_shot;
 
 /* The library's defaults: colour and depth of 1024 × 1024 pixels; the camera must be filled in. */

@@ -66,6 +66,8 @@ def render(
     ao: Optional[int] = None,
     shadow: Optional[bool] = None,
     transparency: Optional[bool] = None,
+    catcher: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
+    holdout: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     repeat: Optional[int] = None,
     fov: Optional[float] = None,
     zoom: Optional[float] = None,
@@ -183,6 +185,8 @@ def render(
     shadow: the lights cast shadows, but for those at your eye
     transparency: splats let light through as their opacity says, and meshes as the alpha of their materials and
         pictures
+    catcher: of an input only the shadows that fall on it: black, and A says how dark
+    holdout: an input hides what is behind it, and is not seen itself
     repeat: draw N times and report the median of the times [1]
     size: the picture's width and height in pixels; cameras of a file are scaled to it [1024x1024, or the
         file's]

@@ -414,7 +414,9 @@ class Shot(ctypes.Structure):
         ("shutter", c_double * 2),
         ("frame", c_double),
         ("motion", c_void_p),
-        ("reserved", c_uint64 * 8),
+        ("catchers", c_uint64),
+        ("holdouts", c_uint64),
+        ("reserved", c_uint64 * 6),
     ]
 
 

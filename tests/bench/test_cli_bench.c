@@ -113,8 +113,16 @@ static void test_gaussian_work(cli_session *session) {
 
 /* Memory or vectors, whichever holds up longer. */
 static void test_floor(void) {
-  const cli_bench_machine machine = {1, 2e9, 1e9, 1e9, 4e9};
-  const cli_bench_work moves = {2e9, 1e9, 4e9}, computes = {2e9, 1e9, 12e9};
+  const cli_bench_machine machine = {.threads = 1,
+                                     .read_bytes_per_s = 2e9,
+                                     .write_bytes_per_s = 1e9,
+                                     .copy_bytes_per_s = 1e9,
+                                     .moved_bytes_per_s = 1e9,
+                                     .operations_per_s = 4e9,
+                                     .divisions_per_s = 1e9,
+                                     .gathered_per_s = 1e9};
+  const cli_bench_work moves = {.read_bytes = 2e9, .written_bytes = 1e9, .operations = 4e9};
+  const cli_bench_work computes = {.read_bytes = 2e9, .written_bytes = 1e9, .operations = 12e9};
   CHECK_NEAR(cli_bench_floor_ms(&moves, &machine), 2000.0, 1e-9);
   CHECK_NEAR(cli_bench_floor_ms(&computes, &machine), 3000.0, 1e-9);
 }

@@ -133,6 +133,8 @@ write mls-thin mls_thin mls thin thin.ply -o thinner.ply --count 4k
 write mls-densify mls_densify mls densify thinner.ply -o dense.ply --spacing 0.7x
 write csg csg csg knot.ply clean.ply -o solid.ply --union
 write sheet sheet sheet knot.ply --plan --section 0,0:1,0 --dpi 20 -o sheet.png
+sed '0,/^end_header/s//comment crs EPSG:32632\nend_header/' knot.ply > placed.ply
+write sheet-placed sheet sheet placed.ply --dpi 20 -o sheet.png
 write contact contact contact knot.ply sheet.png -o contact.png --size 32
 write render render render knot.ply -o knot.exr --aov all --size 256x256
 write render-accumulated render render knot.ply -o accumulated.exr --accumulate 4 --aperture 0.1 --size 64x64

@@ -52,6 +52,9 @@ CASES = {
     "--ao": [["--ao", "16"]],
     "--shadow": [["--shadow"]],
     "--transparency": [["--transparency"]],
+    "--catcher": [["--catcher", "INPUT", "--shadow", "--samples", "1"]],
+    "--holdout": [["--holdout", "INPUT", "--samples", "1"]],
+    "--place": [["--place", "INPUT=1,0,0,0,0,0,-1,0,0,1,0,0"]],
     "--repeat": [["--repeat", "2", "--samples", "2"]],
     "--size": [["--size", "32x40"]],
     "--camera": [["--camera", "camera.json"], ["--camera", "top:0.1:32632"]],
@@ -249,7 +252,7 @@ def outcome(source, arguments):
     out = folder / "out"
     shutil.rmtree(out, ignore_errors=True)
     out.mkdir()
-    words = list(arguments)
+    words = [word.replace("INPUT", source) for word in arguments]
     if "-o" not in words:
         words = ["-o", "p.pfm"] + words
     words = [str(folder / w) if w.endswith((".json", "texture.png")) and w != "statistics.json" else w for w in words]

@@ -29,7 +29,7 @@ static const struct {
   const char *rows, *before; /* the member that the hole is before; null: the end */
 } holes[] = {{"shot", "n_samples"},   {"render", "epsilon"},  {"render", NULL},       {"view", "seconds"},
              {"view", "color_error"}, {"view", "chance"},     {"reading", "access"},  {"reading", "coloring"},
-             {"reading", "cache"},    {"reading", NULL},      {"patches", "step_px"}, {"surface", "cluster"},
+             {"reading", "cache"},    {"reading", "place"},   {"patches", "step_px"}, {"surface", "cluster"},
              {"surface", "is_sharp"}, {"coloring", "minimum"}};
 
 static int n_holes;

@@ -265,6 +265,19 @@ static void check_shadow(conic_context *context, const char *const names[2]) {
                         conic_srgb_decode((double)pixel_of(&plain, MIDDLE + k)[0]);
     CHECK_NEAR(part, 1.0 - 0.8 * exp(-0.5 * q), 0.006);
   }
+  shot.catchers = 2; /* the wall, of which the shadow is left */
+  shot.planes = 1u << CONIC_PLANE_RGBA;
+  conic_image caught = draw(context, source, &shot);
+  const double part = conic_srgb_decode((double)pixel_of(&shadowed, MIDDLE)[0]) /
+                      conic_srgb_decode((double)pixel_of(&plain, MIDDLE)[0]);
+  CHECK_NEAR(pixel_of(&caught, MIDDLE)[3], 1.0 - part, 1e-5);
+  CHECK(pixel_of(&caught, MIDDLE)[0] == 0.0f);
+  shot.catchers = 0;
+  shot.holdouts = 2;
+  conic_image held = draw(context, source, &shot);
+  CHECK(pixel_of(&held, MIDDLE)[3] == 0.0f && pixel_of(&held, MIDDLE)[0] == 0.0f);
+  conic_image_release(context, &caught);
+  conic_image_release(context, &held);
   conic_image_release(context, &plain);
   conic_image_release(context, &shadowed);
   conic_source_close(source);
