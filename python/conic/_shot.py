@@ -455,6 +455,8 @@ class Shot(_Struct):
     focus_pixel: Tuple[float, float] = (0.0, 0.0)
     shutter: Tuple[float, float] = (0.0, 0.0)
     frame: float = 0.0
+    catchers: int = 0
+    holdouts: int = 0
     motion: Optional[str] = field(default=None, metadata={"apart": True})  #: the file of the inputs' motion
     reading: Reading = field(default_factory=Reading, metadata={"apart": True})
     map: Map = field(default_factory=Map, metadata={"apart": True})
