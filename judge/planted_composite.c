@@ -1,6 +1,5 @@
 #include "judge/planted_composite.h"
 
-#include "core/base/base.h"
 #include "core/splats/kernel.h"
 #include "gaussians/draw/ray_meetings.h"
 #include "gaussians/draw/view_rays.h"

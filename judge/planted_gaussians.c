@@ -1,7 +1,5 @@
 #include "core/base/radix.h"
 #include "core/base/vectors.h"
-#include "core/splats/kernel.h"
-#include "gaussians/draw/ray_meetings.h"
 #include "gaussians/draw/view_rays.h"
 #include "gaussians/scene/activation.h"
 #include "gaussians/scene/gaussian_set.h"

@@ -2,7 +2,6 @@
 
 #include "accumulation/sequence.h"
 #include "core/base/trigonometry.h"
-#include "core/base/vectors.h"
 #include "core/image/framing.h"
 #include "core/image/image_common.h"
 #include "lighting/light_work.h"

@@ -2,7 +2,6 @@
 #include "core/base/color.h"
 #include "shots/backdrop.h"
 #include "shots/stage.h"
-#include "shots/way.h"
 #include "source/source_kind.h"
 #include "source/surfaces_among.h"
 

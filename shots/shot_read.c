@@ -1,6 +1,5 @@
 /* Shots from text: by the table of fields, and strictly. */
 
-#include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/files/json_read.h"
 #include "core/pictures/picture_shot.h"

@@ -1,7 +1,6 @@
 #include "source/carried.h"
 
 #include "core/base/vectors.h"
-#include "core/image/image_common.h"
 #include "core/image/view_arguments.h"
 
 /* --- poses --- */

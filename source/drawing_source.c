@@ -16,7 +16,6 @@
 #include "source/mesh_input.h"
 #include "source/moved_drawing.h"
 #include "source/reach.h"
-#include "source/source_kind.h"
 
 typedef struct drawing_source {
   conic_source base;

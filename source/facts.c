@@ -2,7 +2,6 @@
 
 #include <stdarg.h>
 
-#include "core/base/base.h"
 
 void conic_facts_destroy(conic_facts *facts) {
   if (facts)

@@ -1,7 +1,6 @@
 #include "source/lean_cache.h"
 
 #include "conic/version.h"
-#include "core/base/base.h"
 #include "core/base/context_struct.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"

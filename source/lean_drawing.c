@@ -1,7 +1,5 @@
 #include "source/lean_drawing.h"
 
-#include "conic/transparency.h"
-#include "core/base/base.h"
 #include "core/image/viewpoint.h"
 #include "lod/hybrid/build/hybrid_build.h"
 #include "lod/planner/plan.h"

@@ -4,7 +4,6 @@
 
 #include "cli/judge/suite_files.h"
 #include "cli/judge/suite_planes.h"
-#include "cli/judge/suite_scenes.h"
 #include "core/files/file.h"
 #include "core/files/mapping.h"
 

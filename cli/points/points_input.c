@@ -1,6 +1,5 @@
 #include "cli/points/points_input.h"
 
-#include "conic/layers_draw.h"
 #include "core/files/file.h"
 #include "core/formats/model_read.h"
 #include "lod/layers/draw/layers_gather.h"

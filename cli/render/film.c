@@ -1,7 +1,6 @@
 #include "cli/render/film.h"
 
 #include "cli/outputs.h"
-#include "cli/render/frames.h"
 #include "cli/scene/background_options.h"
 #include "cli/shell.h"
 #include "core/base/byte_order.h"

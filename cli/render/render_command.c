@@ -13,7 +13,6 @@
 #include "cli/render/units.h"
 #include "cli/scene/stereo.h"
 #include "core/base/radix.h"
-#include "core/base/threads.h"
 #include "source/lean_drawing.h"
 
 CONIC_DEFINE_ORDER(compare_frames, conic_render_statistics, ms.frame)

@@ -1,11 +1,9 @@
 /* A scene as the commands that draw one take it: opened, measured, framed. */
 
 #include "cli/host_keeps.h"
-#include "cli/render/frames.h"
 #include "cli/render/shot_again.h"
 #include "cli/render/units.h"
 #include "cli/scene/light_options.h"
-#include "cli/scene/scene_options.h"
 #include "cli/scene/stereo.h"
 #include "cli/scene/views.h"
 #include "core/files/file.h"

@@ -4,7 +4,6 @@
 #include "cli/scene/background_options.h"
 #include "cli/scene/light_options.h"
 #include "cli/scene/scene_options.h"
-#include "cli/scene/views.h"
 
 static const char *const cull_words[] = {"none", "back", NULL};
 static const char *const as_words[] = {"auto", "points", "mesh", "hybrid", NULL};

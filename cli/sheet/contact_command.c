@@ -6,7 +6,6 @@
 #include "cli/render/units.h"
 #include "cli/scene/background_options.h"
 #include "cli/sheet/strokes.h"
-#include "cli/tell.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "core/image/image_common.h"

@@ -3,10 +3,8 @@
 #include "cli/outputs.h"
 #include "cli/render/fill_shot.h"
 #include "cli/render/units.h"
-#include "cli/scene/background_options.h"
 #include "cli/scene/light_options.h"
 #include "cli/sheet/sheet.h"
-#include "cli/tell.h"
 #include "core/files/file.h"
 #include "source/top/top_view.h"
 

@@ -2,7 +2,6 @@
  * a north arrow, and the title. */
 #include "cli/sheet/sheet.h"
 #include "core/base/trigonometry.h"
-#include "core/base/vectors.h"
 #include "core/files/file.h"
 
 /* Millimetres of paper: strokes, and heights of capitals. */

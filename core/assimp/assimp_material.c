@@ -1,7 +1,6 @@
 #include "core/assimp/assimp_part.h"
 
 #include "conic/triangles.h"
-#include "core/files/file.h"
 #include "core/image/image_common.h"
 #include "core/image/texture_levels.h"
 #include "core/pictures/image_samples.h"

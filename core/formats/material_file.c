@@ -1,7 +1,6 @@
 #include "core/formats/material_file.h"
 
 #include "core/base/color.h"
-#include "core/files/file.h"
 #include "core/files/input.h"
 #include "core/files/number.h"
 #include "core/image/image_common.h"

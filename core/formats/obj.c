@@ -2,7 +2,6 @@
 
 #include "core/base/vectors.h"
 #include "core/splats/polygon.h"
-#include "core/splats/raw_colors.h"
 
 /* A face's corner that names a normal; the normal may be read later. */
 typedef struct obj_corner {

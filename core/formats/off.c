@@ -2,7 +2,6 @@
 #include "core/formats/readers.h"
 #include "core/splats/face_colors.h"
 #include "core/splats/polygon.h"
-#include "core/splats/raw_colors.h"
 
 /* On a line: enough for polygons of a thousand corners. */
 enum { MOST_NUMBERS = 1024 };

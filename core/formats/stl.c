@@ -7,7 +7,6 @@
 #include "core/formats/readers.h"
 #include "core/meshes/point_slots.h"
 #include "core/splats/face_colors.h"
-#include "core/splats/raw_colors.h"
 
 enum { HEAD_BYTES = 84, FACE_BYTES = 50 };
 

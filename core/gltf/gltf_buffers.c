@@ -2,7 +2,6 @@
 #include "core/base/context_struct.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
-#include "core/files/input.h"
 #include "core/gltf/gltf.h"
 
 enum { LONGEST_NAME = 2048, LONGEST_PATH = 4096 };

@@ -1,7 +1,6 @@
 /* A primitive's vertices, as its file's morph targets and skins have them at rest, and its triangles. */
 #include "core/base/byte_order.h"
 #include "core/base/trigonometry.h"
-#include "core/base/vectors.h"
 #include "core/gltf/gltf_read.h"
 
 /* --- attributes --- */

@@ -1,6 +1,5 @@
 #include "core/pictures/image_exr_deep.h"
 
-#include "core/base/base.h"
 
 #if CONIC_HAVE_OPENEXR
 

@@ -1,6 +1,5 @@
 #include "core/pictures/png_strips.h"
 
-#include "core/base/base.h"
 #include "core/base/byte_order.h"
 #include "core/files/zip.h"
 #include "core/pictures/image_samples.h"

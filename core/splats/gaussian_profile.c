@@ -1,6 +1,5 @@
 #include "core/splats/gaussian_profile.h"
 
-#include "core/base/base.h"
 
 #define LEAST_ALPHA (1.0 / 255.0)
 #define LIKE_INRIA                                                                                                     \

@@ -1,5 +1,4 @@
 #include "core/base/base.h"
-#include "core/base/rank.h"
 #include "core/splats/columns.h"
 #include "core/splats/shares.h"
 

@@ -5,7 +5,6 @@
 #include "core/base/radix.h"
 #include "core/pictures/image_exr_deep.h"
 #include "gaussians/draw/gaussian_parts.h"
-#include "gaussians/draw/gaussian_tile.h"
 #include "gaussians/draw/surfaces_join.h"
 
 typedef struct deep_picture {

@@ -2,7 +2,6 @@
  * has one level. All files of level 0, the finest, are read. */
 
 #include "core/files/json_read.h"
-#include "core/splats/faces.h"
 #include "gaussians/formats/gaussian_formats.h"
 
 typedef struct levels_reader {

@@ -1,7 +1,6 @@
 /* The octree's loops in plain C: the reference. They look at boxes as the lanes do, where that saves most of the
  * work, but keep no lists of what is near, unless these are full. */
 
-#include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/splats/float_vectors.h"
 #include "lod/octree/octree_measure_body.h"

@@ -1,6 +1,5 @@
 #include "lod/octree/screen_cells.h"
 
-#include "core/base/base.h"
 #include "core/base/radix.h"
 #include "core/image/viewpoint.h"
 #include "lod/octree/octree_loops.h"

@@ -1,5 +1,4 @@
 /* Ranges of a file on a web server, by libcurl's multi interface: many requests at once. */
-#include "lod/ranges/ranges_backend.h"
 
 #ifndef CONIC_HAVE_CURL
 

@@ -1,6 +1,5 @@
 /* Another program's intermediates held against what floats may make of them. */
 #include "conic/picture.h"
-#include "core/base/byte_order.h"
 #include "core/files/mapping.h"
 #include "core/files/numpy_array.h"
 #include "core/files/zip.h"

@@ -2,7 +2,6 @@
 
 #include "core/base/vectors.h"
 #include "raster/project/clip_disc.h"
-#include "raster/project/projected.h"
 
 /* The functions here take the few splats that come near the camera (or all of method `ray`), so they compute in double:
  * p may be behind the eye, and M's adjugate has to hold. */

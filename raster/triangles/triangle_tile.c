@@ -1,7 +1,6 @@
 /* The plain C reference of the triangles' slots: a sample at a time. */
 #include "raster/triangles/triangle_tile.h"
 
-#include "core/base/base.h"
 #include "raster/tiles/coverage.h"
 
 void conic_triangle_tile_row(const conic_triangle_frame *frame, conic_triangle_tile *tile, int i_row,

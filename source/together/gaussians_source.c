@@ -5,7 +5,6 @@
 #include "core/base/vectors.h"
 #include "core/image/image_common.h"
 #include "gaussians/draw/gaussian_parts.h"
-#include "gaussians/draw/gaussian_tile.h"
 #include "gaussians/draw/surfaces_join.h"
 #include "gaussians/scene/gaussian_set.h"
 #include "raster/frame/samples.h"

@@ -2,7 +2,6 @@
  * (docs/reference/together.md). */
 #include <string.h>
 
-#include "core/base/base.h"
 #include "core/base/loan_find.h"
 #include "core/splats/near.h"
 #include "gaussians/scene/gaussian_set.h"

@@ -1,7 +1,6 @@
 #include "lod/layers/format/layers_code.h"
 
 #include "core/base/byte_order.h"
-#include "lod/layers/format/layers_key.h"
 
 /* The first two streams are the keys'. */
 enum {
