@@ -203,9 +203,7 @@ conic_status cli_bench_machine_measure(cli_session *worker, cli_bench_machine *m
     machine->gathered_per_s = 4.0 / 16.0 * vectors / least_seconds(worker, CONIC_TASK(gather_slice), l);
   } else
     status = CONIC_ERROR_MEMORY;
-  conic_memory_release(worker->context, l ? l->from : NULL);
-  conic_memory_release(worker->context, l ? l->to : NULL);
-  conic_memory_release(worker->context, l ? l->indices : NULL);
+  conic_memory_release_these(worker->context, l ? l->from : NULL, l ? l->to : NULL, l ? l->indices : NULL);
   free(l);
   return status;
 }

@@ -16,8 +16,7 @@ void cli_cut_region_init(cli_cut_region *region) {
 }
 
 void cli_cut_region_release(conic_context *context, cli_cut_region *region) {
-  conic_memory_release(context, region->corners);
-  conic_memory_release(context, region->ends);
+  conic_memory_release_these(context, region->corners, region->ends);
   cli_cut_region_init(region);
 }
 

@@ -297,8 +297,6 @@ conic_status conic_gather_central(const conic_gathering *g) {
     status = gather_band_rows(&b);
   }
   conic_image_release(g->context, &fine);
-  conic_memory_release(g->context, b.boxes);
-  conic_memory_release(g->context, b.place);
-  conic_memory_release(g->context, b.side);
+  conic_memory_release_these(g->context, b.boxes, b.place, b.side);
   return status;
 }

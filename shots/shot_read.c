@@ -457,8 +457,7 @@ void conic_shot_file_destroy(conic_context *context, conic_shot_file *file) {
     return;
   for (size_t i = 0; i < owned->n_blocks; i++)
     conic_memory_release(context, owned->blocks[i]);
-  conic_memory_release(context, owned->blocks);
-  conic_memory_release(context, owned);
+  conic_memory_release_these(context, owned->blocks, owned);
 }
 
 int conic_shot_is_file(const char *path) {

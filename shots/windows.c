@@ -278,8 +278,6 @@ conic_status conic_windows_draw_together(const conic_shot_work *work, const coni
   conic_source_windows_end(&w.windows);
   *statistics = w.counts.statistics;
   statistics->ms.frame = 1e3 * (conic_seconds_now() - start.clock_s);
-  conic_memory_release(work->context, w.list);
-  conic_memory_release(work->context, w.weights);
-  conic_memory_release(work->context, w.owners);
+  conic_memory_release_these(work->context, w.list, w.weights, w.owners);
   return status;
 }

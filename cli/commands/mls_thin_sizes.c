@@ -230,11 +230,7 @@ conic_status cli_mls_size_thinned(conic_context *context, const conic_model *fro
     status = size_all(context, &work);
     conic_neighbours_release(context, &work.tree);
   }
-  conic_memory_release(context, work.origins);
-  conic_memory_release(context, work.owners);
-  conic_memory_release(context, work.owned);
-  conic_memory_release(context, work.starts);
-  conic_memory_release(context, work.places);
+  conic_memory_release_these(context, work.origins, work.owners, work.owned, work.starts, work.places);
   conic_splats_release(context, &whole.points);
   return status;
 }

@@ -41,8 +41,7 @@ static void forget_axes(conic_context *context, conic_splats *splats) {
       splats->tangent_u[axis][i] = length > 0.0 ? (float)(normal[axis] / length) : 0.0f;
   }
   for (int axis = 0; axis < 3; axis++) {
-    conic_memory_release(context, splats->normal[axis]);
-    conic_memory_release(context, splats->tangent_v[axis]);
+    conic_memory_release_these(context, splats->normal[axis], splats->tangent_v[axis]);
     splats->normal[axis] = splats->tangent_u[axis];
     splats->tangent_u[axis] = splats->tangent_v[axis] = NULL;
   }

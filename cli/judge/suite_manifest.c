@@ -242,8 +242,7 @@ conic_status cli_suite_read_manifest(conic_context *context, const char *path, s
   join_entries(&r);
   status = r.json.status;
   conic_json_close(&r.json);
-  conic_memory_release(context, r.scenes);
-  conic_memory_release(context, r.files);
+  conic_memory_release_these(context, r.scenes, r.files);
   if (status != CONIC_OK)
     cli_suite_release_manifest(context, manifest);
   return status;

@@ -91,8 +91,7 @@ conic_status cli_layer_make_key(const cli_layer_job *job, char key[CONIC_SHA256_
       conic_key_add_text(&sum, hashes[i]);
     conic_sha256_end(&sum, key);
   }
-  conic_memory_release(context, hashes);
-  conic_memory_release(context, all);
+  conic_memory_release_these(context, hashes, all);
   return status;
 }
 

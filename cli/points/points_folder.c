@@ -39,8 +39,7 @@ static conic_status sort_names(conic_context *context, char *row, size_t n_bytes
     memcpy(row, sorted, n_bytes);
   }
   conic_status status = names && sorted ? CONIC_OK : CONIC_ERROR_MEMORY;
-  conic_memory_release(context, names);
-  conic_memory_release(context, sorted);
+  conic_memory_release_these(context, names, sorted);
   return status;
 }
 

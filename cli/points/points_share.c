@@ -73,10 +73,7 @@ void cli_points_share_end(cli_points_share *share) {
   if (!share->session)
     return;
   conic_context *context = share->session->context;
-  conic_memory_release(context, share->names);
-  conic_memory_release(context, share->inputs);
-  conic_memory_release(context, share->cuts);
-  conic_memory_release(context, share->pieces);
+  conic_memory_release_these(context, share->names, share->inputs, share->cuts, share->pieces);
 }
 
 /* --- the cuts, by the first process --- */

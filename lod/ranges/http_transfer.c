@@ -19,8 +19,7 @@ const struct conic_http_fate conic_http_fates[] = {[CONIC_HTTP_SILENCE] = {CONIC
 void conic_http_let_go(conic_http_ranges *http, conic_http_body *held) {
   if (!held || --held->n_holders > 0)
     return;
-  conic_memory_release(http->base.context, held->bytes);
-  conic_memory_release(http->base.context, held);
+  conic_memory_release_these(http->base.context, held->bytes, held);
 }
 
 /* Keeps bytes; room grows with it, and not with what a server claims. Of several parts, which are answered one

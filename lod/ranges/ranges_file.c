@@ -83,8 +83,7 @@ static void cancel(conic_ranges *ranges) {
 static void close_file(conic_ranges *ranges) {
   file_ranges *file = (file_ranges *)ranges;
   conic_mapping_close(ranges->context, &file->mapping);
-  conic_memory_release(ranges->context, file->path);
-  conic_memory_release(ranges->context, file);
+  conic_memory_release_these(ranges->context, file->path, file);
 }
 
 static const conic_ranges_backend backend = {next, release_file, cancel, NULL, NULL, close_file};

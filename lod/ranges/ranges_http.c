@@ -67,17 +67,14 @@ static void close_url(conic_ranges *ranges) {
   for (int i = 0; i < CONIC_HTTP_CONNECTIONS; i++) {
     if (http->transfers[i].easy)
       http->curl->easy_cleanup(http->transfers[i].easy);
-    conic_memory_release(context, http->transfers[i].parts);
-    conic_memory_release(context, http->transfers[i].own_url);
+    conic_memory_release_these(context, http->transfers[i].parts, http->transfers[i].own_url);
   }
   if (http->multi)
     http->curl->multi_cleanup(http->multi);
   if (http->is_global)
     http->curl->global_cleanup();
   conic_http_let_go(http, http->head);
-  conic_memory_release(context, http->ready);
-  conic_memory_release(context, http->url);
-  conic_memory_release(context, http);
+  conic_memory_release_these(context, http->ready, http->url, http);
 }
 
 static void *pump_transfers(void *data) {

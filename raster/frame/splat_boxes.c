@@ -72,7 +72,6 @@ conic_status conic_splats_find_boxes(conic_context *context, const conic_splats 
         conic_parallel_told(context, "render", 0.0, 0.0, (splats->count + CHUNK - 1) / CHUNK, find_boxes_of_chunk, &s);
   if (status == CONIC_OK)
     conic_chunks_count(s.counts, (size_t)conic_context_threads(context), options.method, statistics);
-  conic_memory_release(context, s.records);
-  conic_memory_release(context, s.counts);
+  conic_memory_release_these(context, s.records, s.counts);
   return status;
 }

@@ -148,8 +148,7 @@ conic_status conic_reach_open(conic_context *context, conic_outline_reach *r) {
 }
 
 void conic_reach_close(conic_context *context, conic_outline_reach *r) {
-  conic_memory_release(context, r->bounds);
-  conic_memory_release(context, r->task_farthest);
+  conic_memory_release_these(context, r->bounds, r->task_farthest);
 }
 
 /* --- exact looks --- */

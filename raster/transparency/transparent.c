@@ -238,8 +238,7 @@ conic_status conic_render_transparent(conic_context *context, conic_renderer *re
   own.ms.frame = 1e3 * (conic_seconds_now() - start);
   if (status == CONIC_OK && statistics)
     *statistics = own;
-  conic_memory_release(context, t.splat_marks);
-  conic_memory_release(context, t.materials);
+  conic_memory_release_these(context, t.splat_marks, t.materials);
   conic_drawing_leave(context, &whole.entered);
   return status;
 }
@@ -340,8 +339,7 @@ void conic_transparent_windows_end(conic_transparent_windows *w) {
   conic_prepared_release(w->mask);
   conic_prepared_release(w->picture);
   conic_renderer_destroy(w->mask_renderer);
-  conic_memory_release(context, w->t.splat_marks);
-  conic_memory_release(context, w->t.materials);
+  conic_memory_release_these(context, w->t.splat_marks, w->t.materials);
   conic_drawing_leave(context, &w->whole.entered);
   conic_memory_release(context, w);
 }

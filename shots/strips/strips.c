@@ -361,12 +361,7 @@ static conic_status end_banded(banded *b, conic_status status) {
 static void release_banded(banded *b) {
   conic_exr_bands_end(b->packer, CONIC_ERROR_CANCELLED);
   conic_source_windows_end(&b->windows);
-  conic_memory_release(b->context, b->strips);
-  conic_memory_release(b->context, b->drawn);
-  conic_memory_release(b->context, b->owners);
-  conic_memory_release(b->context, b->piece);
-  conic_memory_release(b->context, b->list_path);
-  conic_memory_release(b->context, b->part_path);
+  conic_memory_release_these(b->context, b->strips, b->drawn, b->owners, b->piece, b->list_path, b->part_path);
 }
 
 conic_status conic_strips_draw(conic_shot_work *work, const conic_camera *camera, const conic_strips_wish *wish,

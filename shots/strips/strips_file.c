@@ -191,8 +191,7 @@ static conic_status read_strips(strips_reading *r) {
   conic_status status = r->bytes ? list_strip_records(r) : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK)
     status = find_strips(r);
-  conic_memory_release(r->context, r->records);
-  conic_memory_release(r->context, r->bytes);
+  conic_memory_release_these(r->context, r->records, r->bytes);
   return status;
 }
 

@@ -147,8 +147,7 @@ conic_status conic_layers_find_cut(const conic_layers *layers, const conic_layer
 }
 
 void conic_layers_cut_release(conic_context *context, conic_layers_cut *cut) {
-  conic_memory_release(context, cut->places);
-  conic_memory_release(context, cut->turned);
+  conic_memory_release_these(context, cut->places, cut->turned);
   memset(cut, 0, sizeof *cut);
 }
 

@@ -292,11 +292,7 @@ void conic_layers_picture_end(conic_layers_picture *d) {
   conic_context *context = d->layers->context;
   conic_layers_store_unpin(d->layers, &d->holding);
   conic_layers_cut_release(context, &d->cut);
-  conic_memory_release(context, d->needed);
-  conic_memory_release(context, d->held);
-  conic_memory_release(context, d->chosen);
-  conic_memory_release(context, d->is_counted);
-  conic_memory_release(context, d);
+  conic_memory_release_these(context, d->needed, d->held, d->chosen, d->is_counted, d);
 }
 
 static conic_status begin_choosing(conic_layers_picture *d) {

@@ -31,8 +31,7 @@ void conic_layers_octree_locate(const conic_layers *layers, uint32_t entry, coni
 /* --- a node's points become a cloud --- */
 
 static void release_node_points(conic_context *context, conic_hierarchy_points *points) {
-  conic_memory_release(context, points->position[0]);
-  conic_memory_release(context, points->color[0]);
+  conic_memory_release_these(context, points->position[0], points->color[0]);
 }
 
 static conic_status allocate_node_points(conic_context *context, size_t n, int has_colors,
@@ -429,15 +428,10 @@ conic_status conic_layers_octree_open(conic_layers *layers, const conic_hierarch
 void conic_layers_octree_close(conic_layers *layers) {
   conic_layers_octree *o = layers->octree;
   conic_hierarchy_close(o->hierarchy);
-  conic_memory_release(layers->context, o->node_of);
-  conic_memory_release(layers->context, o->measured);
+  conic_memory_release_these(layers->context, o->node_of, o->measured);
   for (size_t i = 0; o->guides && i < o->nodes_room[1]; i++)
     conic_memory_release(layers->context, o->guides[i]);
-  conic_memory_release(layers->context, o->guides);
-  conic_memory_release(layers->context, o->is_lost);
-  conic_memory_release(layers->context, o->first_cloud);
-  conic_memory_release(layers->context, o->colors.table);
-  conic_memory_release(layers->context, o);
+  conic_memory_release_these(layers->context, o->guides, o->is_lost, o->first_cloud, o->colors.table, o);
   layers->octree = NULL;
   layers->ranges = NULL;
 }

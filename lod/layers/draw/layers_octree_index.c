@@ -215,8 +215,7 @@ static conic_status renumber_store(conic_layers *layers, const uint32_t *node_of
     conic_layers_store_renumber(layers, becomes, slots);
   else
     conic_memory_release(layers->context, slots);
-  conic_memory_release(layers->context, entry_of);
-  conic_memory_release(layers->context, becomes);
+  conic_memory_release_these(layers->context, entry_of, becomes);
   return is_good ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
 
@@ -224,9 +223,7 @@ static conic_status renumber_store(conic_layers *layers, const uint32_t *node_of
 static void take_entries(conic_layers *layers, conic_layers_entry *entries, uint32_t *node_of, uint64_t *first,
                          size_t n) {
   conic_layers_header *header = &layers->header;
-  conic_memory_release(layers->context, layers->entries);
-  conic_memory_release(layers->context, layers->first_sample);
-  conic_memory_release(layers->context, layers->octree->node_of);
+  conic_memory_release_these(layers->context, layers->entries, layers->first_sample, layers->octree->node_of);
   layers->entries = entries;
   layers->first_sample = first;
   layers->octree->node_of = node_of;
@@ -259,9 +256,7 @@ static conic_status make_index(conic_layers *layers, const octree_places *places
     take_entries(layers, entries, node_of, first, places->n);
     return CONIC_OK;
   }
-  conic_memory_release(context, entries);
-  conic_memory_release(context, node_of);
-  conic_memory_release(context, first);
+  conic_memory_release_these(context, entries, node_of, first);
   return status;
 }
 

@@ -16,8 +16,7 @@ double conic_layers_place_weight(const conic_layers_place *place) {
 }
 
 void conic_layers_windows_release(conic_context *context, conic_layers_windows *windows) {
-  conic_memory_release(context, windows->windows);
-  conic_memory_release(context, windows->window_of);
+  conic_memory_release_these(context, windows->windows, windows->window_of);
 }
 
 /* The first pixel of a row of cells; of the one behind the last, where the picture ends. */

@@ -62,8 +62,7 @@ conic_status conic_layers_spill_begin(size_t block_count, conic_layers_spill *sp
 /* What only putting aside needs. */
 static void release_parts(conic_layers_spill *spill) {
   conic_context *context = spill->layers->context;
-  conic_memory_release(context, spill->begin);
-  conic_memory_release(context, spill->list);
+  conic_memory_release_these(context, spill->begin, spill->list);
   spill->begin = NULL;
   spill->list = NULL;
 }

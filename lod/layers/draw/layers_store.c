@@ -47,8 +47,7 @@ void conic_layers_store_close(conic_layers *layers) {
     conic_memory_release(context, store->slots[i].cloud);
   for (int i = 0; store->decoders && i < 2 * conic_context_threads(context); i++)
     conic_layers_decoder_destroy(store->decoders[i]);
-  conic_memory_release(context, store->slots);
-  conic_memory_release(context, store->decoders);
+  conic_memory_release_these(context, store->slots, store->decoders);
   memset(store, 0, sizeof *store);
 }
 
