@@ -157,8 +157,7 @@ static void report_bench(cli_json *json, const void *cookie) {
       cli_bench_report_shares(json, &job->lines[i], machine_of(job, &job->lines[i]));
     cli_json_close(json);
   }
-  cli_json_count(json, "wrong_pictures", (uint64_t)job->n_wrong);
-  cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
+  cli_json_counts(json, NULL, {"wrong_pictures", (uint64_t)job->n_wrong}, {"peak_rss_bytes", cli_peak_rss_bytes()});
 }
 
 /* That the device is there is known before the minutes are spent, too. */

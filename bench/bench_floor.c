@@ -16,13 +16,11 @@ void cli_bench_report_machine(cli_json *json, const cli_bench_machine *machines,
     cli_json_object(json, NULL);
     cli_json_count(json, "threads", (uint64_t)machines[i].threads);
     cli_json_text(json, "isa", conic_isa_name(conic_isa_best()));
-    cli_json_number(json, "read_bytes_per_s", machines[i].read_bytes_per_s);
-    cli_json_number(json, "write_bytes_per_s", machines[i].write_bytes_per_s);
-    cli_json_number(json, "copy_bytes_per_s", machines[i].copy_bytes_per_s);
-    cli_json_number(json, "moved_bytes_per_s", machines[i].moved_bytes_per_s);
-    cli_json_number(json, "operations_per_s", machines[i].operations_per_s);
-    cli_json_number(json, "divisions_per_s", machines[i].divisions_per_s);
-    cli_json_number(json, "gathered_per_s", machines[i].gathered_per_s);
+    cli_json_figures(
+        json, NULL, {"read_bytes_per_s", machines[i].read_bytes_per_s},
+        {"write_bytes_per_s", machines[i].write_bytes_per_s}, {"copy_bytes_per_s", machines[i].copy_bytes_per_s},
+        {"moved_bytes_per_s", machines[i].moved_bytes_per_s}, {"operations_per_s", machines[i].operations_per_s},
+        {"divisions_per_s", machines[i].divisions_per_s}, {"gathered_per_s", machines[i].gathered_per_s});
     cli_json_close(json);
   }
   cli_json_close(json);

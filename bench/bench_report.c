@@ -54,19 +54,14 @@ void cli_bench_print_curve(const cli_bench_line *lines, int n_lines) {
 
 static void report_counts(cli_json *json, const cli_bench_line *line) {
   const conic_render_statistics *s = &line->statistics;
-  cli_json_text(json, "scene", line->scene_name);
-  cli_json_text(json, "method", cli_bench_method_name(line->i_method));
-  cli_json_text(json, "isa", s->isa);
-  cli_json_count(json, "threads", (uint64_t)line->threads);
-  cli_json_count(json, "width", (uint64_t)line->width);
-  cli_json_count(json, "height", (uint64_t)line->height);
-  cli_json_count(json, "splats_in", s->splats_in);
-  cli_json_count(json, "splats_drawn", s->splats_drawn);
-  cli_json_count(json, "triangles_in", s->triangles_in);
+  cli_json_texts(json, NULL, {"scene", line->scene_name}, {"method", cli_bench_method_name(line->i_method)},
+                 {"isa", s->isa});
+  cli_json_counts(json, NULL, {"threads", (uint64_t)line->threads}, {"width", (uint64_t)line->width},
+                  {"height", (uint64_t)line->height}, {"splats_in", s->splats_in}, {"splats_drawn", s->splats_drawn},
+                  {"triangles_in", s->triangles_in});
   if (line->chooses)
     cli_json_number(json, "error_px", line->error_px);
-  cli_json_count(json, "fragments", s->fragments);
-  cli_json_count(json, "pixels_covered", s->pixels_covered);
+  cli_json_counts(json, NULL, {"fragments", s->fragments}, {"pixels_covered", s->pixels_covered});
   cli_json_number(json, "overdraw", overdraw(s));
 }
 
@@ -92,17 +87,14 @@ static void report_times(cli_json *json, const cli_bench_line *line) {
   const conic_render_statistics *s = &line->statistics;
   cli_json_count(json, "frames", (uint64_t)line->n_frames);
   report_stages(json, "ms", &s->ms, 1.0);
-  cli_json_number(json, "ms_first", line->first_ms);
-  cli_json_number(json, "ms_choice", s->ms.lod);
-  cli_json_number(json, "cpu_ms", line->cpu_ms);
+  cli_json_figures(json, NULL, {"ms_first", line->first_ms}, {"ms_choice", s->ms.lod}, {"cpu_ms", line->cpu_ms});
   cli_json_numbers(json, "ms_quartiles", line->quartile_ms, 2);
   report_stages(json, "ns_per_splat", &s->ms, 1e6 / (double)s->splats_in);
-  cli_json_number(json, "cycles", line->cycles);
-  cli_json_number(json, "instructions", line->instructions);
-  cli_json_number(json, "cycles_per_splat", line->cycles / (double)s->splats_in);
-  cli_json_number(json, "msplats_per_s", millions_per_s((double)s->splats_in, s->ms.frame));
-  cli_json_number(json, "drawn_msplats_per_s", millions_per_s((double)s->splats_drawn, s->ms.frame));
-  cli_json_number(json, "mfragments_per_s", millions_per_s((double)s->fragments, s->ms.frame));
+  cli_json_figures(json, NULL, {"cycles", line->cycles}, {"instructions", line->instructions},
+                   {"cycles_per_splat", line->cycles / (double)s->splats_in},
+                   {"msplats_per_s", millions_per_s((double)s->splats_in, s->ms.frame)},
+                   {"drawn_msplats_per_s", millions_per_s((double)s->splats_drawn, s->ms.frame)},
+                   {"mfragments_per_s", millions_per_s((double)s->fragments, s->ms.frame)});
 }
 
 static void report_work(cli_json *json, const cli_bench_line *line) {

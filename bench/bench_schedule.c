@@ -203,11 +203,8 @@ static void report_schedule(cli_json *json, const cli_bench_schedule *s) {
   const char *region;
   cli_json_object(json, NULL);
   cli_json_count(json, "threads", (uint64_t)s->threads);
-  cli_json_number(json, "ms", s->ms);
-  cli_json_number(json, "efficiency", efficiency_of(s->work_ms, s->ms, s->threads));
-  cli_json_number(json, "work_ms", s->work_ms);
-  cli_json_number(json, "serial_ms", s->serial_ms);
-  cli_json_number(json, "start_ms", s->start_ms);
+  cli_json_figures(json, NULL, {"ms", s->ms}, {"efficiency", efficiency_of(s->work_ms, s->ms, s->threads)},
+                   {"work_ms", s->work_ms}, {"serial_ms", s->serial_ms}, {"start_ms", s->start_ms});
   cli_json_text(json, "limit", loss_names[cli_bench_schedule_limit(s, &region)]);
   cli_json_text(json, "limit_region", region);
   report_losses(json, s->lost_ms);
@@ -216,12 +213,9 @@ static void report_schedule(cli_json *json, const cli_bench_schedule *s) {
     const cli_bench_scheduled *r = &s->regions[i];
     cli_json_object(json, NULL);
     cli_json_text(json, "name", r->name);
-    cli_json_count(json, "regions", r->n_regions);
-    cli_json_count(json, "tasks", r->n_tasks);
-    cli_json_number(json, "serial_ms", r->serial_ms);
-    cli_json_number(json, "work_ms", r->work_ms);
-    cli_json_number(json, "ms", r->ms);
-    cli_json_number(json, "longest_ms", r->longest_ms);
+    cli_json_counts(json, NULL, {"regions", r->n_regions}, {"tasks", r->n_tasks});
+    cli_json_figures(json, NULL, {"serial_ms", r->serial_ms}, {"work_ms", r->work_ms}, {"ms", r->ms},
+                     {"longest_ms", r->longest_ms});
     report_losses(json, r->lost_ms);
     cli_json_close(json);
   }

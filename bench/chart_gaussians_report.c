@@ -85,10 +85,8 @@ void cli_gaussian_chart_report(cli_json *json, const cli_gaussian_chart *chart) 
     cli_json_count(json, "pairs", p->statistics.pairs);
     for (int i = 0; i < chart->n_truths; i++) {
       cli_json_object(json, cli_truth_names[i]);
-      cli_json_number(json, "max", p->errors[i].max);
-      cli_json_number(json, "rmse", p->errors[i].rmse);
-      cli_json_number(json, "psnr", p->errors[i].psnr);
-      cli_json_number(json, "quadrature", chart->quadrature[i]);
+      cli_json_figures(json, NULL, {"max", p->errors[i].max}, {"rmse", p->errors[i].rmse}, {"psnr", p->errors[i].psnr},
+                       {"quadrature", chart->quadrature[i]});
       cli_json_close(json);
     }
     cli_json_close(json);

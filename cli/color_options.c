@@ -64,8 +64,7 @@ void cli_color_report(cli_json *json, const conic_coloring *coloring) {
   cli_json_text(json, "field", coloring->field);
   if (coloring->ramp) {
     cli_json_figures(json, NULL, {"minimum", coloring->minimum}, {"maximum", coloring->maximum});
-    cli_json_text(json, "ramp", coloring->ramp);
-    cli_json_text(json, "scale", coloring->is_root ? "root" : "linear");
+    cli_json_texts(json, NULL, {"ramp", coloring->ramp}, {"scale", coloring->is_root ? "root" : "linear"});
   }
   cli_json_close(json);
 }

@@ -26,8 +26,7 @@ void cli_team_report_write(cli_json *json, const char *what, const cli_team_repo
     const cli_team_part *s = &report->of[i];
     cli_json_object(json, NULL);
     cli_json_count(json, "units", s->n_units);
-    cli_json_number(json, "busy_ms", 1e3 * s->busy_seconds);
-    cli_json_number(json, "waited_ms", 1e3 * s->waited_seconds);
+    cli_json_figures(json, NULL, {"busy_ms", 1e3 * s->busy_seconds}, {"waited_ms", 1e3 * s->waited_seconds});
     cli_json_counts(json, NULL, {"sent_bytes", s->sent_bytes}, {"received_bytes", s->received_bytes},
                     {"peak_rss_bytes", s->peak_bytes});
     cli_json_close(json);

@@ -96,10 +96,8 @@ static void remove_slot(thinning *work, uint32_t slot) {
 static int allocate_thinning(thinning *work) {
   size_t n = work->surface->tree.n_slots;
   conic_context *context = work->surface->context;
-  work->heap.slots = conic_memory_allocate(context, n, sizeof *work->heap.slots);
-  work->heap.keys = conic_memory_allocate(context, n, sizeof *work->heap.keys);
-  work->is_stale = conic_memory_allocate_zeroed(context, n, sizeof *work->is_stale);
-  return work->heap.slots && work->heap.keys && work->is_stale;
+  return conic_memory_allocate_these(context, CONIC_ROOM(work->heap.slots, n), CONIC_ROOM(work->heap.keys, n),
+                                     CONIC_ZEROED(work->is_stale, n)) == CONIC_OK;
 }
 
 static conic_status measure_all(thinning *work) {

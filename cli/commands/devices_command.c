@@ -23,8 +23,7 @@ static void report_device(cli_json *json, const conic_opencl_device *d) {
   cli_json_bool(json, "is_cpu", d->is_cpu);
   cli_json_bool(json, "has_double", d->has_double);
   cli_json_bool(json, "rounds_correctly", d->rounds_correctly);
-  cli_json_count(json, "compute_units", (uint64_t)d->n_compute_units);
-  cli_json_count(json, "memory_bytes", d->memory_bytes);
+  cli_json_counts(json, NULL, {"compute_units", (uint64_t)d->n_compute_units}, {"memory_bytes", d->memory_bytes});
   cli_json_close(json);
 }
 

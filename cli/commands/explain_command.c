@@ -211,8 +211,7 @@ static int write_report(cli_session *session, const explain_job *job) {
   cli_json_text(json, "method", cli_method_name(&job->scene));
   if (job->scene.accumulating.is_sample_given)
     cli_json_count(json, "sample", job->scene.accumulating.i_sample);
-  cli_json_count(json, "width", (uint64_t)job->camera.width);
-  cli_json_count(json, "height", (uint64_t)job->camera.height);
+  cli_json_counts(json, NULL, {"width", (uint64_t)job->camera.width}, {"height", (uint64_t)job->camera.height});
   if (job->is_splat_given)
     status = write_splat(json, job);
   if (job->is_pixel_given && status == CONIC_OK)
@@ -313,19 +312,14 @@ static int answer(cli_session *session, explain_job *job) {
   return exit_code;
 }
 
-static int explain(cli_session *session, explain_job *job) {
-  int exit_code = cli_session_open(session);
-  if (exit_code != CLI_DONE)
-    return exit_code;
+static int explain(cli_session *session, void *cookie) {
+  explain_job *job = cookie;
   conic_status status = cli_scene_begin(session, &job->scene);
   if (status == CONIC_OK)
     status = cli_scene_open(session, &job->scene);
   if (status == CONIC_OK && cli_is_composited(&job->scene))
-    exit_code = cli_explain_composited(session, &job->scene, job->pixel[0], job->pixel[1]);
-  else
-    exit_code = status == CONIC_OK ? answer(session, job) : cli_exit_of(status);
-  cli_scene_release(session, &job->scene);
-  return exit_code;
+    return cli_explain_composited(session, &job->scene, job->pixel[0], job->pixel[1]);
+  return status == CONIC_OK ? answer(session, job) : cli_exit_of(status);
 }
 
 /* The answer goes to standard output, unless --json names a file. */
@@ -358,10 +352,7 @@ static int run(cli_session *session, int argc, char **argv) {
     exit_code = check(session, &job);
   if (exit_code == CLI_DONE)
     exit_code = cli_sample_check(session, &job.scene);
-  if (exit_code == CLI_DONE)
-    exit_code = explain(session, &job);
-  free(job.scene.inputs);
-  return exit_code < 0 ? CLI_DONE : exit_code;
+  return cli_scene_run(session, exit_code, &job.scene, explain, &job);
 }
 
 const cli_command cli_explain = {

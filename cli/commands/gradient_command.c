@@ -114,10 +114,8 @@ static conic_status differentiate(cli_session *session, gradient_job *job) {
   return status;
 }
 
-static int produce_gradient(cli_session *session, gradient_job *job) {
-  int exit_code = cli_session_open(session);
-  if (exit_code != CLI_DONE)
-    return exit_code;
+static int produce_gradient(cli_session *session, void *cookie) {
+  gradient_job *job = cookie;
   conic_status status = cli_scene_begin(session, &job->scene);
   if (status == CONIC_OK)
     status = conic_gaussian_weights_read(session->context, job->weights_path, &job->weights);
@@ -125,14 +123,13 @@ static int produce_gradient(cli_session *session, gradient_job *job) {
     status = cli_scene_open(session, &job->scene);
   if (status == CONIC_OK)
     status = differentiate(session, job);
-  exit_code = cli_exit_of(status);
+  int exit_code = cli_exit_of(status);
   if (exit_code == CLI_DONE)
     exit_code = cli_json_write(session, report_gradient, job);
   if (exit_code == CLI_DONE)
     tell_gradient(session, job);
   conic_gaussian_gradient_release(session->context, &job->gradient);
   conic_gaussian_weights_release(session->context, &job->weights);
-  cli_scene_release(session, &job->scene);
   return exit_code;
 }
 
@@ -176,10 +173,7 @@ static int run_gradient(cli_session *session, int argc, char **argv) {
   int exit_code = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, &job.scene);
   if (exit_code == CLI_DONE)
     exit_code = check_gradient(session, &job);
-  if (exit_code == CLI_DONE)
-    exit_code = produce_gradient(session, &job);
-  free(job.scene.inputs);
-  return exit_code < 0 ? CLI_DONE : exit_code;
+  return cli_scene_run(session, exit_code, &job.scene, produce_gradient, &job);
 }
 
 const cli_command cli_gradient = {

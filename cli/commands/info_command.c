@@ -207,8 +207,7 @@ static void print_whole(const info_job *job) {
 }
 
 static void report_image(cli_json *json, const info_job *job) {
-  cli_json_count(json, "width", (uint64_t)job->image_size[0]);
-  cli_json_count(json, "height", (uint64_t)job->image_size[1]);
+  cli_json_counts(json, NULL, {"width", (uint64_t)job->image_size[0]}, {"height", (uint64_t)job->image_size[1]});
   cli_json_array(json, "planes");
   for (int plane = 0; plane < CONIC_N_PLANES; plane++)
     if (job->image_planes >> plane & 1u)

@@ -49,18 +49,15 @@ static conic_status project_scene(cli_session *session, project_job *job) {
   return status;
 }
 
-static int produce_projection(cli_session *session, project_job *job) {
-  int exit_code = cli_session_open(session);
-  if (exit_code != CLI_DONE)
-    return exit_code;
-  exit_code = cli_exit_of(project_scene(session, job));
+static int produce_projection(cli_session *session, void *cookie) {
+  project_job *job = cookie;
+  int exit_code = cli_exit_of(project_scene(session, job));
   if (exit_code == CLI_DONE)
     exit_code = cli_json_write(session, report_project, job);
   if (exit_code == CLI_DONE)
     cli_note(session, "%zu Gaussians, %zu of them shown, %zu entries of tiles' lists", job->found.count,
              count_shown(&job->found), job->found.n_isects);
   conic_gaussian_intermediates_release(session->context, &job->found);
-  cli_scene_release(session, &job->scene);
   return exit_code;
 }
 
@@ -91,10 +88,7 @@ static int run_project(cli_session *session, int argc, char **argv) {
   int exit_code = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, &job.scene);
   if (exit_code == CLI_DONE)
     exit_code = check_project(session, &job);
-  if (exit_code == CLI_DONE)
-    exit_code = produce_projection(session, &job);
-  free(job.scene.inputs);
-  return exit_code < 0 ? CLI_DONE : exit_code;
+  return cli_scene_run(session, exit_code, &job.scene, produce_projection, &job);
 }
 
 const cli_command cli_project = {

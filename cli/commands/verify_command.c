@@ -75,8 +75,7 @@ static void report_planes(cli_json *json, const verify_job *job) {
     if (!job->verdict.planes[i].is_compared)
       continue;
     cli_json_object(json, conic_plane_describe((conic_plane)i)->name);
-    cli_json_number(json, "max_abs", job->verdict.planes[i].max_abs);
-    cli_json_number(json, "p999", job->verdict.planes[i].p999);
+    cli_json_figures(json, NULL, {"max_abs", job->verdict.planes[i].max_abs}, {"p999", job->verdict.planes[i].p999});
     if (i != CONIC_PLANE_ID && job->question == CONIC_ORACLE_METHOD)
       cli_json_number(json, "widest", conic_reference_width(&job->reference, (conic_plane)i));
     cli_json_close(json);
@@ -227,10 +226,9 @@ static int finish(cli_session *session, const verify_job *job) {
   return job->verdict.pass ? CLI_DONE : CLI_DIFFERENT;
 }
 
-static int verify(cli_session *session, verify_job *job) {
-  int exit_code = cli_session_open(session);
-  if (exit_code != CLI_DONE)
-    return exit_code;
+static int verify(cli_session *session, void *cookie) {
+  verify_job *job = cookie;
+  int exit_code;
   conic_status status = cli_scene_begin(session, &job->scene);
   if (status == CONIC_OK && job->image_path)
     status = conic_image_read(session->context, job->image_path, &job->image);
@@ -245,7 +243,6 @@ static int verify(cli_session *session, verify_job *job) {
   }
   conic_reference_release(session->context, &job->reference);
   conic_image_release(session->context, &job->image);
-  cli_scene_release(session, &job->scene);
   return exit_code;
 }
 
@@ -305,10 +302,7 @@ static int run(cli_session *session, int argc, char **argv) {
     exit_code = cli_check_outputs(session, NULL, 0);
   if (exit_code == CLI_DONE)
     exit_code = cli_scene_inputs_stay(session, &job.scene, &job.image_path, 0);
-  if (exit_code == CLI_DONE)
-    exit_code = verify(session, &job);
-  free(job.scene.inputs);
-  return exit_code < 0 ? CLI_DONE : exit_code;
+  return cli_scene_run(session, exit_code, &job.scene, verify, &job);
 }
 
 const cli_command cli_verify = {

@@ -61,8 +61,7 @@ static void write_verdict(cli_json *json, const void *cookie) {
   cli_json_count(json, "doubtful_pixels", v->doubtful_pixels);
   write_by_doubt(json, "doubtful_by_reason", v->doubtful);
   write_by_doubt(json, "explained_by_reason", v->explained_by);
-  cli_json_count(json, "wide_pixels", v->wide_pixels);
-  cli_json_count(json, "wrong_pixels", v->pixels[CONIC_PIXEL_WRONG]);
+  cli_json_counts(json, NULL, {"wide_pixels", v->wide_pixels}, {"wrong_pixels", v->pixels[CONIC_PIXEL_WRONG]});
   if (v->n_worst)
     cli_report_fault(json, "worst", &v->worst[0]);
   cli_json_figures(json, "ms", {"render", r->render_ms}, {"oracle", r->oracle_ms});

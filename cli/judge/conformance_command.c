@@ -233,8 +233,7 @@ static void describe_cases(cli_json *json, const conformance_job *job) {
     cli_json_object(json, NULL);
     cli_json_text(json, "name", name);
     cli_json_count(json, "level", (uint64_t)one->scene->level);
-    cli_json_text(json, "scene", one->scene->name);
-    cli_json_text(json, "profile", cli_suite_profile_name(one->profile));
+    cli_json_texts(json, NULL, {"scene", one->scene->name}, {"profile", cli_suite_profile_name(one->profile)});
     if (has_exr(one->scene))
       describe_path(json, "exr", "expected", name, ".exr");
     describe_path(json, "npy", "expected", name, ".npy");

@@ -129,22 +129,19 @@ static int tell_judged(cli_session *session, const cli_judge_job *job) {
   return cli_judge_is_right(job) && !cli_judge_is_undecided(job) ? CLI_DONE : CLI_DIFFERENT;
 }
 
-static int judge_scene(cli_session *session, cli_judge_job *job) {
-  int exit_code = cli_session_open(session);
-  if (exit_code != CLI_DONE)
-    return exit_code;
+static int judge_scene(cli_session *session, void *cookie) {
+  cli_judge_job *job = cookie;
   conic_status status = make_ready(session, job);
   if (status == CONIC_OK)
     status = find_out(session, job);
   if (status == CONIC_OK)
     status = show_maps(session, job);
-  exit_code = status == CONIC_OK ? tell_judged(session, job) : cli_exit_of(status);
+  int exit_code = status == CONIC_OK ? tell_judged(session, job) : cli_exit_of(status);
   free(job->classes);
   free(job->ranges);
   free(job->wrong_values);
   conic_image_release(session->context, &job->ours);
   conic_picture_release(session->context, &job->picture);
-  cli_scene_release(session, &job->scene);
   return exit_code;
 }
 
@@ -231,10 +228,7 @@ static int run_judge(cli_session *session, int argc, char **argv) {
   job.reading.rounding = (conic_code_rounding)rounding;
   if (exit_code == CLI_DONE)
     exit_code = check_judge(session, &job);
-  if (exit_code == CLI_DONE)
-    exit_code = judge_scene(session, &job);
-  free(job.scene.inputs);
-  return exit_code < 0 ? CLI_DONE : exit_code;
+  return cli_scene_run(session, exit_code, &job.scene, judge_scene, &job);
 }
 
 const cli_command cli_judge = {

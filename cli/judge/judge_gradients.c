@@ -114,10 +114,8 @@ static conic_status judge_gradient(cli_session *session, gradients_job *job) {
   return status;
 }
 
-static int judge_gradient_files(cli_session *session, gradients_job *job) {
-  int exit_code = cli_session_open(session);
-  if (exit_code != CLI_DONE)
-    return exit_code;
+static int judge_gradient_files(cli_session *session, void *cookie) {
+  gradients_job *job = cookie;
   conic_status status = cli_scene_begin(session, &job->scene);
   if (status == CONIC_OK)
     status = conic_gaussian_weights_read(session->context, job->files.weights, &job->weights);
@@ -127,7 +125,7 @@ static int judge_gradient_files(cli_session *session, gradients_job *job) {
     status = cli_scene_open(session, &job->scene);
   if (status == CONIC_OK)
     status = judge_gradient(session, job);
-  exit_code = cli_exit_of(status);
+  int exit_code = cli_exit_of(status);
   if (exit_code == CLI_DONE)
     exit_code = cli_json_write(session, write_gradient_verdict, job);
   if (exit_code == CLI_DONE) {
@@ -137,7 +135,6 @@ static int judge_gradient_files(cli_session *session, gradients_job *job) {
   }
   conic_gaussian_gradient_release(session->context, &job->theirs);
   conic_gaussian_weights_release(session->context, &job->weights);
-  cli_scene_release(session, &job->scene);
   return exit_code;
 }
 
@@ -170,8 +167,5 @@ int cli_gradients_run(cli_session *session, int argc, char **argv) {
   int exit_code = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, &job.scene);
   if (exit_code == CLI_DONE)
     exit_code = check_gradient_judging(session, &job);
-  if (exit_code == CLI_DONE)
-    exit_code = judge_gradient_files(session, &job);
-  free(job.scene.inputs);
-  return exit_code < 0 ? CLI_DONE : exit_code;
+  return cli_scene_run(session, exit_code, &job.scene, judge_gradient_files, &job);
 }

@@ -47,8 +47,7 @@ static void write_intermediates(cli_json *json, const void *cookie) {
   for (int k = 0; k < job->verdict.n_arrays; k++) {
     const conic_judged_array *a = &job->verdict.arrays[k];
     cli_json_object(json, NULL);
-    cli_json_text(json, "name", a->name);
-    cli_json_text(json, "stage", conic_gaussian_stage_name(a->stage));
+    cli_json_texts(json, NULL, {"name", a->name}, {"stage", conic_gaussian_stage_name(a->stage)});
     cli_json_counts(json, NULL, {"judged", a->judged}, {"wrong", a->wrong});
     if (a->wrong)
       write_worst_number(json, a);
@@ -96,11 +95,9 @@ static conic_status judge_arrays(cli_session *session, intermediates_job *job) {
   return status;
 }
 
-static int judge_intermediates(cli_session *session, intermediates_job *job) {
-  int exit_code = cli_session_open(session);
-  if (exit_code != CLI_DONE)
-    return exit_code;
-  exit_code = cli_exit_of(judge_arrays(session, job));
+static int judge_intermediates(cli_session *session, void *cookie) {
+  intermediates_job *job = cookie;
+  int exit_code = cli_exit_of(judge_arrays(session, job));
   if (exit_code == CLI_DONE)
     exit_code = cli_json_write(session, write_intermediates, job);
   if (exit_code == CLI_DONE) {
@@ -108,7 +105,6 @@ static int judge_intermediates(cli_session *session, intermediates_job *job) {
       print_intermediates(job);
     exit_code = first_wrong(job) ? CLI_DIFFERENT : CLI_DONE;
   }
-  cli_scene_release(session, &job->scene);
   return exit_code;
 }
 
@@ -134,8 +130,5 @@ int cli_intermediates_run(cli_session *session, int argc, char **argv) {
   int exit_code = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, &job.scene);
   if (exit_code == CLI_DONE)
     exit_code = check_intermediates(session, &job);
-  if (exit_code == CLI_DONE)
-    exit_code = judge_intermediates(session, &job);
-  free(job.scene.inputs);
-  return exit_code < 0 ? CLI_DONE : exit_code;
+  return cli_scene_run(session, exit_code, &job.scene, judge_intermediates, &job);
 }

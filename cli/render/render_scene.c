@@ -138,6 +138,18 @@ void cli_scene_release(cli_session *session, cli_render_job *job) {
     conic_source_close(job->source);
 }
 
+int cli_scene_run(cli_session *session, int exit_code, cli_render_job *scene,
+                  int (*work)(cli_session *session, void *job), void *job) {
+  if (exit_code == CLI_DONE)
+    exit_code = cli_session_open(session);
+  if (exit_code == CLI_DONE) {
+    exit_code = work(session, job);
+    cli_scene_release(session, scene);
+  }
+  free(scene->inputs);
+  return exit_code < 0 ? CLI_DONE : exit_code;
+}
+
 /* What the options say of a camera that sees all of the scene. */
 static conic_shot_framing framing_of(const cli_render_job *job, int i_frame) {
   conic_shot_framing framing;

@@ -155,6 +155,10 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
 /* The same for another command that takes render's camera and drawing options beside `own` ones, and has neither
  * outputs nor several frames. */
 int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int argc, char **argv, cli_render_job *job);
+/* Where parsing and checking ended with CLI_DONE, opens the session, does a command's work, whose exit code this
+ * returns, and releases the scene. Releases its inputs whatever came before. */
+int cli_scene_run(cli_session *session, int exit_code, cli_render_job *scene,
+                  int (*work)(cli_session *session, void *job), void *job);
 /* What job's options are before any is parsed; cli_scene_parse leaves alone what is no option of its own. */
 void cli_scene_defaults(cli_render_job *job);
 

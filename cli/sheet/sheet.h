@@ -40,7 +40,7 @@ typedef struct cli_sheet_job {
   double scale; /* 1:scale; 0: as fits */
   double gsd;   /* world units of a pixel; 0: by the scale */
   double dpi, paper_mm[2];
-  int is_paper_given, is_depth_given, is_unit_given;
+  int is_paper_given, is_unit_given;
   double unit_m;    /* metres of a world unit */
   const char *unit; /* its sign */
   double beyond;    /* what lies behind a section's band is drawn so far; infinite: all */

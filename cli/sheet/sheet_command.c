@@ -159,28 +159,22 @@ static void report_sheet(cli_json *json, const void *cookie) {
   cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
 }
 
-static int make_sheet(cli_sheet_job *job) {
-  cli_session *session = job->session;
+static int make_sheet(cli_session *session, void *cookie) {
+  cli_sheet_job *job = cookie;
   cli_render_job *scene = &job->scene;
-  int exit_code = cli_session_open(session);
-  if (exit_code != CLI_DONE)
-    return exit_code;
   conic_status status = cli_scene_begin(session, scene);
   if (status == CONIC_OK && cli_units_choose(session, scene) != CLI_DONE)
     status = CONIC_ERROR_ARGUMENT;
-  int is_idle = status == CONIC_OK && cli_units_are_others(session, scene);
-  if (status == CONIC_OK && !is_idle)
+  if (status == CONIC_OK && !cli_units_are_others(session, scene))
     status = cli_scene_open(session, scene);
-  if (status == CONIC_OK && !is_idle) {
+  if (status == CONIC_OK)
     cli_units_settle(scene);
-    is_idle = cli_units_are_others(session, scene);
-  }
-  if (status == CONIC_OK && !is_idle)
+  if (status == CONIC_OK && !cli_units_are_others(session, scene))
     status = draw_panels(job);
-  if (status == CONIC_OK && !is_idle && cli_session_speaks(session))
+  if (status == CONIC_OK && cli_session_speaks(session))
     status = write_sheet(job);
-  exit_code = cli_exit_of(status);
-  if (exit_code == CLI_DONE && !is_idle && cli_session_speaks(session)) {
+  int exit_code = cli_exit_of(status);
+  if (exit_code == CLI_DONE && cli_session_speaks(session)) {
     exit_code = cli_json_write(session, report_sheet, job);
     if (cli_json_leaves_text(session))
       printf("%s: %d x %d pixels, 1:%.6g at %g dpi\n", job->output, job->width, job->height, job->scale, job->dpi);
@@ -189,7 +183,6 @@ static int make_sheet(cli_sheet_job *job) {
     cli_top_store_close(&job->panels[i].store);
   cli_strokes_release(&job->strokes);
   conic_georeference_release(session->context, &job->reference);
-  cli_scene_release(session, scene);
   return exit_code;
 }
 
@@ -286,10 +279,8 @@ static int run_sheet(cli_session *session, int argc, char **argv) {
     if (job.is_unit_given)
       job.unit_m = unit_metres[unit];
     job.scene.shot.planes = conic_shot_needs(&job.scene.shot, 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z);
-    exit_code = make_sheet(&job);
   }
-  free(job.scene.inputs);
-  return exit_code < 0 ? CLI_DONE : exit_code;
+  return cli_scene_run(session, exit_code, &job.scene, make_sheet, &job);
 }
 
 const cli_command cli_sheet = {

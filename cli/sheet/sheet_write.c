@@ -93,10 +93,10 @@ static conic_status put_panel(conic_pdf *pdf, const cli_panel *panel, unsigned c
   for (int y = 0; y < panel->height && status == CONIC_OK; y++) {
     status = cli_top_store_get(&panel->store, 0, (size_t)y, rgb, (size_t)panel->width);
     if (status == CONIC_OK)
-      status = conic_pdf_rows(pdf, rgb, (size_t)panel->width * 3);
+      conic_pdf_rows(pdf, rgb, (size_t)panel->width * 3);
   }
-  conic_status ended = conic_pdf_picture_end(pdf);
-  return status == CONIC_OK ? ended : status;
+  conic_pdf_picture_end(pdf);
+  return status;
 }
 
 static void put_strokes(conic_pdf *pdf, const cli_strokes *strokes) {

@@ -33,9 +33,8 @@ conic_status conic_incidence_create(conic_context *context, const conic_model *m
   conic_status status = check_triangles(context, model, most);
   if (status != CONIC_OK)
     return status;
-  incidence->starts = conic_memory_allocate_zeroed(context, model->points.count + 2, sizeof *incidence->starts);
-  incidence->triangles = conic_memory_allocate(context, model->n_triangles, 3 * sizeof *incidence->triangles);
-  if (!incidence->starts || !incidence->triangles) {
+  if (conic_memory_allocate_these(context, CONIC_ZEROED(incidence->starts, model->points.count + 2),
+                                  CONIC_ROOM(incidence->triangles, 3 * model->n_triangles)) != CONIC_OK) {
     conic_incidence_release(context, incidence);
     return CONIC_ERROR_MEMORY;
   }

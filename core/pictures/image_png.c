@@ -87,10 +87,7 @@ static conic_status write_file(conic_context *context, const char *path, const c
   if (status != CONIC_OK)
     return status;
   status = write_image(context, image, tone, rows, conic_output_stream(output));
-  if (status == CONIC_OK)
-    return conic_output_commit(output); /* which also says what is wrong with the stream */
-  conic_output_abandon(output);
-  return status;
+  return conic_output_end(output, status); /* which also says what is wrong with the stream */
 }
 
 conic_status conic_png_write(conic_context *context, const char *path, const conic_image *image, conic_tone tone) {

@@ -98,44 +98,29 @@ conic_status conic_pdf_picture(conic_pdf *pdf, int width, int height) {
   return CONIC_OK;
 }
 
+/* The picture's end are no bytes. */
+void conic_pdf_rows(conic_pdf *pdf, const unsigned char *rgb, size_t n_bytes) {
 #if CONIC_HAVE_ZLIB
-
-static conic_status pack_rows(conic_pdf *pdf, const unsigned char *rgb, size_t n_bytes, int how) {
   pdf->packer.next_in = (Bytef *)(uintptr_t)rgb;
   pdf->packer.avail_in = (uInt)n_bytes;
   do {
     pdf->packer.next_out = pdf->packed;
     pdf->packer.avail_out = PACKED_BYTES;
-    deflate(&pdf->packer, how);
+    deflate(&pdf->packer, n_bytes ? Z_NO_FLUSH : Z_FINISH);
     put_pdf_bytes(pdf, pdf->packed, PACKED_BYTES - pdf->packer.avail_out);
   } while (pdf->packer.avail_out == 0);
-  return CONIC_OK;
-}
-
-conic_status conic_pdf_rows(conic_pdf *pdf, const unsigned char *rgb, size_t n_bytes) {
-  return pack_rows(pdf, rgb, n_bytes, Z_NO_FLUSH);
-}
-
-conic_status conic_pdf_picture_end(conic_pdf *pdf) {
-  conic_status status = pack_rows(pdf, NULL, 0, Z_FINISH);
-  deflateEnd(&pdf->packer);
-  end_stream(pdf, FIRST_PICTURE + 2 * pdf->n_pictures - 1);
-  return status;
-}
-
 #else
-
-conic_status conic_pdf_rows(conic_pdf *pdf, const unsigned char *rgb, size_t n_bytes) {
   put_pdf_bytes(pdf, rgb, n_bytes);
-  return CONIC_OK;
-}
-
-conic_status conic_pdf_picture_end(conic_pdf *pdf) {
-  end_stream(pdf, FIRST_PICTURE + 2 * pdf->n_pictures - 1);
-  return CONIC_OK;
-}
-
 #endif
+}
+
+void conic_pdf_picture_end(conic_pdf *pdf) {
+  conic_pdf_rows(pdf, NULL, 0);
+#if CONIC_HAVE_ZLIB
+  deflateEnd(&pdf->packer);
+#endif
+  end_stream(pdf, FIRST_PICTURE + 2 * pdf->n_pictures - 1);
+}
 
 static void begin_contents(conic_pdf *pdf) {
   pdf->has_contents = 1;

@@ -14,8 +14,8 @@ conic_status conic_pdf_open(conic_context *context, const char *path, const doub
 /* Begins a picture of so many pixels, of which rows of R, G and B follow, a byte each, from the top; then ends it.
  * Errors: ARGUMENT (too many of them), MEMORY. */
 conic_status conic_pdf_picture(conic_pdf *pdf, int width, int height);
-conic_status conic_pdf_rows(conic_pdf *pdf, const unsigned char *rgb, size_t n_bytes);
-conic_status conic_pdf_picture_end(conic_pdf *pdf);
+void conic_pdf_rows(conic_pdf *pdf, const unsigned char *rgb, size_t n_bytes);
+void conic_pdf_picture_end(conic_pdf *pdf);
 
 /* Adds to what is on the page, once all pictures are there: operators of PDF, as printf. Picture i, from 0, is /Pi. */
 void conic_pdf_print(conic_pdf *pdf, const char *format, ...) CONIC_AS_PRINTF(2, 3);

@@ -80,9 +80,8 @@ conic_status conic_gaussian_bins_make(conic_context *context, const conic_gaussi
       bins->n_tiles_x * (((size_t)window->end[1] + CONIC_GAUSSIAN_TILE - 1) / CONIC_GAUSSIAN_TILE - bins->first_y);
   j.a_run = n / MOST_RUNS + 1 > LEAST_RUN ? n / MOST_RUNS + 1 : LEAST_RUN;
   j.n_runs = (n + j.a_run - 1) / j.a_run;
-  bins->tile_begin = conic_memory_allocate(context, bins->n_tiles + 1, sizeof *bins->tile_begin);
-  j.places = conic_memory_allocate_zeroed(context, j.n_runs * bins->n_tiles, sizeof *j.places);
-  if (!bins->tile_begin || !j.places) {
+  if (conic_memory_allocate_these(context, CONIC_ROOM(bins->tile_begin, bins->n_tiles + 1),
+                                  CONIC_ZEROED(j.places, j.n_runs * bins->n_tiles)) != CONIC_OK) {
     conic_memory_release(context, j.places);
     return CONIC_ERROR_MEMORY;
   }

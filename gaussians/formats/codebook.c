@@ -17,21 +17,27 @@ typedef struct code_cell {
   double value, loss;
 } code_cell;
 
+/* Where in n ascending codes a value stands, or would. */
+static int place_in(const float *codebook, int n, float value) {
+  int low = 0;
+  while (low < n) {
+    int middle = (low + n) / 2;
+    if (codebook[middle] < value)
+      low = middle + 1;
+    else
+      n = middle;
+  }
+  return low;
+}
+
 /* Whether there are no more than 256 values; then these, ascending, the last repeated. */
 static int find_all_values(const void *numbers, conic_number_at *number_at, size_t n, float codebook[CONIC_CODES]) {
   int n_found = 0;
   for (size_t i = 0; i < n; i++) {
     float value = number_at(numbers, i);
-    int low = 0, high = n_found;
     if (value - value != 0.0f)
       continue;
-    while (low < high) {
-      int middle = (low + high) / 2;
-      if (codebook[middle] < value)
-        low = middle + 1;
-      else
-        high = middle;
-    }
+    int low = place_in(codebook, n_found, value);
     if (low < n_found && codebook[low] == value)
       continue;
     if (n_found == CONIC_CODES)
@@ -159,14 +165,7 @@ conic_status conic_codebook_make(conic_context *context, const void *numbers, co
 }
 
 unsigned char conic_codebook_find(const float codebook[CONIC_CODES], float value) {
-  int low = 0, high = CONIC_CODES - 1;
-  while (low < high) {
-    int middle = (low + high) / 2;
-    if (codebook[middle] < value)
-      low = middle + 1;
-    else
-      high = middle;
-  }
+  int low = place_in(codebook, CONIC_CODES - 1, value);
   if (low > 0 && value - codebook[low - 1] < codebook[low] - value)
     low--;
   return (unsigned char)low;

@@ -178,9 +178,8 @@ static conic_status make_gradient_room(oracle_gradient_job *j) {
   is_done &= (j->workers = conic_memory_allocate_zeroed(j->context, threads, sizeof *j->workers)) != NULL;
   for (size_t k = 0; is_done && k < threads; k++) {
     gradient_worker *w = &j->workers[k];
-    w->shown = conic_memory_allocate(j->context, j->most_entries, sizeof *w->shown);
-    w->met = conic_memory_allocate(j->context, j->most_entries + 1, sizeof *w->met);
-    is_done = w->shown && w->met;
+    is_done = conic_memory_allocate_these(j->context, CONIC_ROOM(w->shown, j->most_entries),
+                                          CONIC_ROOM(w->met, j->most_entries + 1)) == CONIC_OK;
   }
   if (is_done && j->judging)
     return conic_oracle_judging_room(j);

@@ -318,12 +318,9 @@ conic_status conic_oracle_judging_room(oracle_gradient_job *j) {
   is_done &= (g->of_threads = conic_memory_allocate_zeroed(j->context, threads, sizeof *g->of_threads)) != NULL;
   for (size_t k = 0; is_done && k < threads; k++) {
     gradient_variants *v = &g->of_threads[k];
-    v->all = conic_memory_allocate(j->context, n, sizeof *v->all);
-    v->list = conic_memory_allocate(j->context, n, sizeof *v->list);
-    v->errors = conic_memory_allocate(j->context, n, sizeof *v->errors);
-    v->base = conic_memory_allocate(j->context, n, sizeof *v->base);
-    v->other = conic_memory_allocate(j->context, n, sizeof *v->other);
-    is_done = v->all && v->list && v->errors && v->base && v->other;
+    is_done =
+        conic_memory_allocate_these(j->context, CONIC_ROOM(v->all, n), CONIC_ROOM(v->list, n), CONIC_ROOM(v->errors, n),
+                                    CONIC_ROOM(v->base, n), CONIC_ROOM(v->other, n)) == CONIC_OK;
   }
   return is_done ? CONIC_OK : CONIC_ERROR_MEMORY;
 }

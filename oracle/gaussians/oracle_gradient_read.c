@@ -114,8 +114,6 @@ static conic_status read_gradient_ply(conic_context *context, conic_input *input
     status = read_gradient_rows(&source, properties, targets, g->count);
   if (source.is_cut)
     status = conic_ply_tell_cut(&source, 0);
-  if (source.is_cut)
-    status = conic_ply_tell_cut(&source, 0);
   conic_memory_release(context, targets);
   return status;
 }

@@ -56,13 +56,9 @@ conic_status conic_thinner_create(conic_context *context, size_t most_points, co
   if (!made)
     return CONIC_ERROR_MEMORY;
   made->most_points = most_points;
-  made->points = conic_memory_allocate(context, most_points, sizeof *made->points);
-  made->order = conic_memory_allocate(context, most_points, sizeof *made->order);
-  made->chosen = conic_memory_allocate(context, most_points, sizeof *made->chosen);
-  made->number = conic_memory_allocate(context, most_points, sizeof *made->number);
-  made->links = conic_memory_allocate(context, most_points, sizeof *made->links);
-  made->cells = conic_memory_allocate(context, n_cells, sizeof *made->cells);
-  if (made->points && made->order && made->chosen && made->number && made->links && made->cells) {
+  if (conic_memory_allocate_these(context, CONIC_ROOM(made->points, most_points), CONIC_ROOM(made->order, most_points),
+                                  CONIC_ROOM(made->chosen, most_points), CONIC_ROOM(made->number, most_points),
+                                  CONIC_ROOM(made->links, most_points), CONIC_ROOM(made->cells, n_cells)) == CONIC_OK) {
     *thinner = made;
     return CONIC_OK;
   }
