@@ -129,7 +129,7 @@ write octree octree octree knot.ply -o knot.cot
 write hybrid hybrid hybrid tent.obj -o tent.chy --largest 1 --phase1 -0.1 --phase2 0.1 --most-error 0
 write mls-project mls_project mls project knot.ply -o clean.ply
 write mls-spheres mls_project mls project thin.ply -o clean.ply --type apss
-write mls-thin mls_thin mls thin thin.ply -o thinner.ply --count 4k
+write mls-thin mls_thin mls thin thin.ply -o thinner.ply --count 2k
 write mls-densify mls_densify mls densify thinner.ply -o dense.ply --spacing 0.7x
 write csg csg csg knot.ply clean.ply -o solid.ply --union
 write sheet sheet sheet knot.ply --plan --section 0,0:1,0 --dpi 20 -o sheet.png
@@ -196,7 +196,7 @@ write judge-wrong judge judge two.splat --profile khr-2026 --size 40x40 --pictur
 camera='"width": 40, "height": 40, "fx": 40, "fy": 40, "world_to_camera": [[1,0,0,0],[0,-1,0,0],[0,0,-1,4],[0,0,0,1]]'
 echo "{$camera, \"cx\": 20, \"cy\": 20}" > middle.json
 echo "{$camera, \"cx\": 20.5, \"cy\": 20.5}" > off.json
-run 0 make gaussians -n 60 -o many.ply
+run 0 make gaussians -n 30 -o many.ply
 run 0 render many.ply --camera off.json --profile gsplat-1.6 --background 1,1,1 -o off.exr
 write judge-two-wrong judge judge many.ply --camera middle.json --profile gsplat-1.6 --picture off.exr
 run 0 render many.ply --camera off.json --profile gsplat-1.6 --background 1,1,1 -o tile.pfm

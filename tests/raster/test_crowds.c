@@ -80,7 +80,7 @@ int main(void) {
   static const double greats[] = {1e9, 1e4, 100.0, 10.0, 2.0};
 #endif
   fixture f = fixture_open(2);
-  fixture_camera(&f, 67, 18, 60.0);
+  fixture_camera(&f, 35, 18, 60.0);
   for (size_t i = 0; i < sizeof greats / sizeof greats[0]; i++)
     for (int is_inside = 0; is_inside < 2; is_inside++) {
       double middle = is_inside ? 0.0 : 4.0;

@@ -36,7 +36,7 @@ static void hash_all(fixture *f, uint64_t hashes[CONIC_N_DRAWN_PLANES]) {
 }
 
 static void fill(fixture *f, int scene) {
-  fixture_camera(f, 230, 170, 160.0);
+  fixture_camera(f, 166, 106, 110.0);
   f->options.near_z = 1e-3;
   if (scene == 0)
     fill_hostile(f, 4000);

@@ -158,7 +158,7 @@ static void check_clean_cube(conic_context *context) {
 }
 
 static void check_smooth(conic_context *context) {
-  conic_splats torus = shape_sample(context, SHAPE_TORUS, IS_SANITIZED ? 3000 : 6000, 0.3, 4), results[2];
+  conic_splats torus = shape_sample(context, SHAPE_TORUS, IS_SANITIZED ? 1500 : 6000, 0.3, 4), results[2];
   for (int is_sharp = 0; is_sharp < 2; is_sharp++) {
     conic_surface_options options;
     conic_surface_options_init(&options);

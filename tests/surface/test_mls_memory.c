@@ -57,7 +57,7 @@ static conic_status work_on(conic_context *context, const conic_splats *samples,
   conic_thin_options_init(&thin);
   conic_densify_options_init(&densify);
   options.cluster = cluster;
-  thin.count = 75;
+  thin.count = 48;
   thin.is_measured = 1;
   densify.spacing = 0.4;
   conic_status status = conic_surface_create(context, samples, &options, &surface);
@@ -123,8 +123,8 @@ static void check_stopped(const conic_splats *samples, const conic_splats *splat
 
 int main(void) {
   conic_context *plain = check_context(1);
-  conic_splats samples = shape_sample(plain, SHAPE_TORUS, 100, 0.1, 3);
-  conic_splats splats = shape_places(plain, SHAPE_TORUS, 100, 3);
+  conic_splats samples = shape_sample(plain, SHAPE_TORUS, 64, 0.1, 3);
+  conic_splats splats = shape_places(plain, SHAPE_TORUS, 64, 3);
   long n_failures = 0;
   for (int what = 0; what < 3; what++) {
     for (long i = 1;; i++) {

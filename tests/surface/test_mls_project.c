@@ -272,20 +272,22 @@ static double median_nearest(conic_context *context, const conic_splats *samples
 /* The RMS of the offset along the clean normals, in spacings. */
 static double offset_of(conic_context *context, const conic_splats *noisy, const conic_splats *clean, double spacing,
                         const conic_surface_options *options) {
+  enum { STEP = 4 };
   conic_surface *surface = shape_surface(context, noisy, options);
   conic_surface_point *points;
-  size_t n = shape_project(surface, noisy, 1, &points), n_done = 0;
+  size_t n = shape_project(surface, noisy, STEP, &points), n_done = 0;
   double sum2 = 0.0;
-  for (size_t i = 0; i < n; i++) {
+  for (size_t k = 0; k < n; k++) {
+    const size_t i = k * STEP;
     double normal[3], offset = 0.0, length2 = 0.0;
-    if (points[i].outcome != CONIC_SURFACE_DONE)
+    if (points[k].outcome != CONIC_SURFACE_DONE)
       continue;
     for (int axis = 0; axis < 3; axis++) {
       int next = (axis + 1) % 3, last = (axis + 2) % 3;
       normal[axis] = (double)clean->tangent_u[next][i] * (double)clean->tangent_v[last][i] -
                      (double)clean->tangent_u[last][i] * (double)clean->tangent_v[next][i];
       length2 += normal[axis] * normal[axis];
-      offset += normal[axis] * (points[i].position[axis] - clean->origin[axis] - (double)clean->position[axis][i]);
+      offset += normal[axis] * (points[k].position[axis] - clean->origin[axis] - (double)clean->position[axis][i]);
     }
     n_done++;
     sum2 += offset * offset / length2;

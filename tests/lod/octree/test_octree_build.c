@@ -293,7 +293,7 @@ int main(int argc, char **argv) {
   test_scene(CONIC_SCENE_SPHERE, 2000);
   test_scene(CONIC_SCENE_GYROID, 3000);
   if (!IS_SANITIZED)
-    test_scene(CONIC_SCENE_TERRAIN, 30000);
+    test_scene(CONIC_SCENE_TERRAIN, 10000);
   test_check();
   test_threads();
   test_few();
