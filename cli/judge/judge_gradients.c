@@ -3,6 +3,8 @@
 #include "cli/commands/gaussian_commands.h"
 #include "cli/outputs.h"
 
+enum { MOST_RUNS = 64, MOST_RUNS_PRINTED = 8 };
+
 typedef struct gradients_job {
   cli_render_job scene;
   cli_gradient_files files;
@@ -11,11 +13,63 @@ typedef struct gradients_job {
   conic_gaussian_weights weights;
   conic_gaussian_gradient theirs;
   conic_gradient_verdict verdict;
+  uint8_t *wrong_kinds; /* of each Gaussian */
   double ms;
 } gradients_job;
 
 static int is_gradient_right(const gradients_job *job) {
   return job->verdict.gaussians[CONIC_PIXEL_WRONG] <= job->max_wrong;
+}
+
+/* The Gaussians of which the kind is wrong, in runs: the next after *at. */
+static int next_wrong_run(const gradients_job *job, int kind, size_t *at, size_t *last) {
+  const size_t n = job->theirs.count;
+  while (*at < n && !(job->wrong_kinds[*at] >> kind & 1))
+    (*at)++;
+  for (*last = *at; *last + 1 < n && job->wrong_kinds[*last + 1] >> kind & 1;)
+    (*last)++;
+  return *at < n;
+}
+
+static void write_gradient_mistake(cli_json *json, const gradients_job *job, int kind) {
+  const conic_gradient_mistake *m = &job->verdict.mistakes[kind];
+  size_t last;
+  if (m->name) {
+    cli_json_object(json, "mistake");
+    cli_json_text(json, "name", m->name);
+    cli_json_bool(json, "named", m->is_named);
+    cli_json_count(json, "righted", m->righted);
+    cli_json_count(json, "spoilt", m->spoilt);
+    cli_json_close(json);
+  }
+  cli_json_array(json, "runs");
+  for (size_t at = 0, n = 0; n < MOST_RUNS && next_wrong_run(job, kind, &at, &last); at = last + 1, n++) {
+    cli_json_array(json, NULL);
+    cli_json_count(json, NULL, at);
+    cli_json_count(json, NULL, last);
+    cli_json_close(json);
+  }
+  cli_json_close(json);
+}
+
+static void print_gradient_mistake(const gradients_job *job, int kind) {
+  const conic_gradient_mistake *m = &job->verdict.mistakes[kind];
+  const char *name = conic_gradient_kind_name((conic_gradient_kind)kind);
+  const size_t wrong = job->verdict.wrong[kind];
+  size_t at = 0, last, n = 0;
+  if (!wrong)
+    return;
+  printf("wrong     %s of Gaussians", name);
+  for (; n < MOST_RUNS_PRINTED && next_wrong_run(job, kind, &at, &last); at = last + 1, n++)
+    printf(at == last ? "%s %zu" : "%s %zu-%zu", n ? "," : "", at, last);
+  puts(next_wrong_run(job, kind, &at, &last) ? ", and more" : "");
+  if (m->name && m->is_named)
+    printf("mistake   %s: %s; it rights %zu of %zu and spoils none\n", name, m->name, m->righted, wrong);
+  else if (m->name)
+    printf("nearest   %s: %s; it rights %zu of %zu, and would spoil %zu that are right\n", name, m->name, m->righted,
+           wrong, m->spoilt);
+  else
+    printf("mistake   %s: none that is known\n", name);
 }
 
 static void write_gradient_worst(cli_json *json, const conic_gradient_verdict *v) {
@@ -50,6 +104,8 @@ static void write_gradient_verdict(cli_json *json, const void *cookie) {
     cli_json_count(json, "wrong", v->wrong[k]);
     cli_json_figures(json, NULL, {"greatest", v->greatest[k]}, {"max_abs", v->max_abs[k]},
                      {"share_of_bound", v->share_of_bound[k]});
+    if (v->wrong[k])
+      write_gradient_mistake(json, job, k);
     cli_json_close(json);
   }
   cli_json_close(json);
@@ -71,6 +127,8 @@ static void print_gradient_verdict(const gradients_job *job) {
     printf("worst     Gaussian %zu: %s[%d] is %.9g; it may be %.9g to %.9g\n", v->worst[k].gaussian,
            conic_gradient_kind_name((conic_gradient_kind)v->worst[k].kind), v->worst[k].number, v->worst[k].found,
            v->worst[k].low, v->worst[k].high);
+  for (int k = 0; k < CONIC_N_GRADIENT_KINDS; k++)
+    print_gradient_mistake(job, k);
   puts(is_gradient_right(job) ? "right" : "WRONG");
 }
 
@@ -106,6 +164,10 @@ static conic_status judge_gradient(cli_session *session, gradients_job *job) {
   camera = job->scene.shot.camera;
   if (status == CONIC_OK)
     status = check_gradient_files(job, &camera, scene);
+  job->wrong_kinds = status == CONIC_OK ? calloc(scene->count + 1, 1) : NULL;
+  if (status == CONIC_OK && !job->wrong_kinds)
+    status = CONIC_ERROR_MEMORY;
+  how.wrong_kinds = job->wrong_kinds;
   const double start = cli_seconds();
   if (status == CONIC_OK)
     status = conic_gaussian_gradient_judge(session->context, scene, &camera, &options, &job->weights, &how,
@@ -133,6 +195,7 @@ static int judge_gradient_files(cli_session *session, void *cookie) {
       print_gradient_verdict(job);
     exit_code = is_gradient_right(job) ? CLI_DONE : CLI_DIFFERENT;
   }
+  free(job->wrong_kinds);
   conic_gaussian_gradient_release(session->context, &job->theirs);
   conic_gaussian_weights_release(session->context, &job->weights);
   return exit_code;

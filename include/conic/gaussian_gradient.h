@@ -43,6 +43,8 @@ typedef struct conic_gradient_options {
   const conic_float_model *model; /* its roundings put decisions in doubt; null: those of strict floats */
   uint32_t is_raw;                /* with respect to ln s and logit o */
   uint32_t leaves_doubts;         /* do not look for doubts */
+  uint8_t *wrong_kinds;           /* where one is judged, takes of each Gaussian bits 1 << conic_gradient_kind of the
+                                     kinds that are wrong; may be null */
 } conic_gradient_options;
 
 /* Strict floats, activated values, doubts are looked for. */
@@ -55,12 +57,13 @@ typedef enum conic_gradient_kind {
   CONIC_GRADIENT_SCALE = 1,
   CONIC_GRADIENT_ROTATION = 2,
   CONIC_GRADIENT_OPACITY = 3,
-  CONIC_GRADIENT_SH = 4
+  CONIC_GRADIENT_SH = 4,
+  CONIC_GRADIENT_PLACE = 5 /* the centre on the screen */
 } conic_gradient_kind;
 
-#define CONIC_N_GRADIENT_KINDS 5
+#define CONIC_N_GRADIENT_KINDS 6
 
-/* "mean", "scale", "rotation", "opacity", "sh"; null for a number that is none. */
+/* "mean", "scale", "rotation", "opacity", "sh", "place"; null for a number that is none. */
 CONIC_API const char *conic_gradient_kind_name(conic_gradient_kind kind);
 
 /* Arrays of one number a Gaussian; the harmonics are laid out as in conic_gaussians. */
@@ -103,8 +106,8 @@ CONIC_API conic_status conic_gaussian_gradient_write(conic_context *context, con
                                                      const conic_gaussian_gradient *gradient);
 
 /* Reads another program's gradient: a .ply with these properties, or an .npz with one row a Gaussian in each array:
- * means, quats (w, x, y, z), scales, opacities, and sh of (n, harmonics, 3). On success the caller owns *gradient; on
- * failure it is empty. Errors: INPUT, MEMORY, CANCELLED, UNSUPPORTED. */
+ * means, quats (w, x, y, z), scales, opacities, sh of (n, harmonics, 3), and means2d in pixels. On success the caller
+ * owns *gradient; on failure it is empty. Errors: INPUT, MEMORY, CANCELLED, UNSUPPORTED. */
 CONIC_API conic_status conic_gaussian_gradient_read(conic_context *context, const char *path,
                                                     conic_gaussian_gradient *gradient);
 
@@ -115,6 +118,14 @@ typedef struct conic_gradient_fault {
   double found, value, low, high;
 } conic_gradient_fault;
 
+/* A mistake that a kind's wrong numbers look like. It is named where nine of ten wrong Gaussians become right if it is
+ * assumed, and no right one becomes wrong. */
+typedef struct conic_gradient_mistake {
+  const char *name;       /* as "sh-direction"; null: none comes near */
+  size_t righted, spoilt; /* Gaussians; `spoilt` is 0 where it is named */
+  int is_named;
+} conic_gradient_mistake;
+
 typedef struct conic_gradient_verdict {
   size_t gaussians[4];                           /* by conic_gaussian_class */
   size_t wrong[CONIC_N_GRADIENT_KINDS];          /* Gaussians with a wrong number of a kind */
@@ -124,6 +135,7 @@ typedef struct conic_gradient_verdict {
                                                     the numbers within it */
   conic_gradient_fault worst[CONIC_MAX_FAULTS];  /* the Gaussians that are farthest off, the worst first */
   int n_worst, pass;                             /* pass: no number is wrong */
+  conic_gradient_mistake mistakes[CONIC_N_GRADIENT_KINDS];
   uint64_t reserved[6];
 } conic_gradient_verdict;
 

@@ -117,6 +117,7 @@ static size_t meet_all_shown(const oracle_gradient_job *j, gradient_worker *w, s
 static double differentiate_pixel(const oracle_gradient_job *j, gradient_worker *w, size_t n, size_t x, size_t y,
                                   double (*sums)[N_BY_SCREEN], char *is_touched) {
   oracle_gradient_pixel pixel = {.x = (double)x + 0.5, .y = (double)y + 0.5, .background = j->background};
+  pixel.passes_most = j->passes_most;
   double behind;
   if (!conic_oracle_pixel_weights(j->weights, y * (size_t)j->weights->width + x, pixel.weights))
     return 0.0;

@@ -55,7 +55,8 @@ enum { N_WEIGHTS = 5 };
 typedef struct oracle_gradient_pixel {
   double x, y, weights[N_WEIGHTS];
   const float *background;
-  int goes_on; /* all are composited, whatever T is */
+  int goes_on;     /* all are composited, whatever T is */
+  int passes_most; /* the derivative goes through α's greatest, as if it were not held there */
 } oracle_gradient_pixel;
 
 /* Composites the list in its order, until it ends: fills in `before`, by_weight and by_z, and sets *n to how many are
@@ -74,8 +75,10 @@ typedef struct oracle_camera_gradient {
 
 /* A Gaussian's parameters. */
 typedef struct oracle_parameters {
-  double mean[3], scale[3], rotation[4], opacity, sh[3 * (CONIC_MAX_SH_DEGREE + 1) * (CONIC_MAX_SH_DEGREE + 1)];
+  double mean[3], scale[3], rotation[4], turn[4], opacity,
+      sh[3 * (CONIC_MAX_SH_DEGREE + 1) * (CONIC_MAX_SH_DEGREE + 1)];
   uint32_t doubts; /* clamps that roundings of the model may pass */
+                   /* turn: by the quaternion of unit length, as if its numbers were free */
 } oracle_parameters;
 
 /* The inverse of the camera's rotation, and −R⁻¹t. */

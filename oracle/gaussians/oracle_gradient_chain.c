@@ -162,7 +162,7 @@ static void ray_back(const oracle_gaussian_view *view, const oracle_gaussian *g,
   }
 }
 
-static void quaternion_back(const double q[4], double length, const double by[3][3], double to[4]) {
+static void quaternion_back(const double q[4], double length, const double by[3][3], double free[4], double to[4]) {
   const double w = q[0], x = q[1], y = q[2], z = q[3];
   const double skew[3] = {by[2][1] - by[1][2], by[0][2] - by[2][0], by[1][0] - by[0][1]};
   const double both[3] = {by[2][1] + by[1][2], by[0][2] + by[2][0], by[1][0] + by[0][1]};
@@ -175,6 +175,7 @@ static void quaternion_back(const double q[4], double length, const double by[3]
     along += to[k] * q[k];
     square += q[k] * q[k];
   }
+  memcpy(free, to, 4 * sizeof *to);
   for (int k = 0; k < 4; k++) /* its length does not matter */
     to[k] = (to[k] - along / square * q[k]) / length;
 }
@@ -197,7 +198,7 @@ static void turn_back(const oracle_gaussian_view *view, const conic_gaussians *s
     }
     camera->cam_from_world[row][3] += from->mean[row];
   }
-  quaternion_back(q, length, by_world, to->rotation);
+  quaternion_back(q, length, by_world, to->turn, to->rotation);
 }
 
 /* Whether rounding decides if a channel of the colour is above 0. `size` is the sum of its terms' absolute values. */

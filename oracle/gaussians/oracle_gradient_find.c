@@ -14,7 +14,7 @@ const char *conic_gradient_doubt_name(int doubt) {
 CONIC_DEFINE_ZERO_OPTIONS(conic_gradient_options)
 
 CONIC_DEFINE_NAMES(conic_gradient_kind_name, conic_gradient_kind, CONIC_N_GRADIENT_KINDS, "mean", "scale", "rotation",
-                   "opacity", "sh")
+                   "opacity", "sh", "place")
 
 int conic_gradient_has_profile(conic_gaussian_profile profile) {
   const conic_profile_row *rules = conic_profile_row_of(profile);
@@ -215,7 +215,8 @@ conic_status conic_oracle_gradient_begin(conic_context *context, const conic_gau
                              .model = own.leaves_doubts ? NULL : &e->model,
                              .background = e->options.background,
                              .view = e->view,
-                             .gradient = gradient};
+                             .gradient = gradient,
+                             .wrong_kinds = own.wrong_kinds};
   find_gradient_eye(camera, &j->eye);
   return CONIC_OK;
 }

@@ -58,6 +58,8 @@ struct oracle_gradient_job {
   oracle_camera_gradient *cameras;  /* of each run of Gaussians */
   uint16_t *doubts;                 /* of each Gaussian, by each thread */
   oracle_gradient_judging *judging; /* null: nothing is judged */
+  int passes_most;                  /* oracle_gradient_pixel */
+  uint8_t *wrong_kinds;             /* conic_gradient_options */
 };
 
 /* Fills in the totals, is_shown and the loss. Errors: MEMORY, CANCELLED. */
@@ -103,3 +105,27 @@ void conic_oracle_row_sizes(const oracle_gaussian_view *view, const oracle_gauss
 /* The chain of an ellipse with every term of one sign; `sums` are none below 0. */
 void conic_oracle_gradient_sizes(const oracle_gaussian_view *view, const conic_gaussians *gaussians, size_t i,
                                  const double *sums, oracle_parameters *to);
+
+/* A Gaussian's numbers in one row: of the mean, the scales, the quaternion, the opacity, the place and the harmonics.
+ * Gaussians are judged in runs of so many. */
+enum {
+  ORACLE_GRADIENT_RUN = 256,
+  ORACLE_FIXED_NUMBERS = 13,
+  ORACLE_MOST_NUMBERS = ORACLE_FIXED_NUMBERS + 3 * (CONIC_MAX_SH_DEGREE + 1) * (CONIC_MAX_SH_DEGREE + 1)
+};
+
+conic_gradient_kind conic_oracle_number_kind(size_t at);
+size_t conic_oracle_place_in_kind(size_t at);
+double conic_oracle_number_in(const conic_gaussian_gradient *gradient, size_t i, size_t at);
+/* Of what the chain made of `sums`. */
+double conic_oracle_number_of(const oracle_parameters *parameters, const double *sums, size_t at);
+/* What a number is multiplied by where stored values are meant. */
+double conic_oracle_raw_factor(const oracle_gradient_job *job, size_t i, size_t at);
+/* How far off roundings may have Gaussian i's n numbers, and decisions in doubt besides. */
+void conic_oracle_bound_numbers(const oracle_gradient_job *job, size_t i, size_t n, double *bound, double *slack);
+/* Whether a decision about Gaussian i is in doubt that is not followed the other way. */
+int conic_oracle_is_open(const oracle_gradient_job *job, size_t i);
+
+/* Fills in verdict->mistakes. Errors: MEMORY, CANCELLED. */
+conic_status conic_oracle_name_mistakes(const oracle_gradient_job *job, const conic_gaussian_gradient *theirs,
+                                        conic_gradient_verdict *verdict);

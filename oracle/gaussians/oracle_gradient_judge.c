@@ -1,7 +1,7 @@
 /* Somebody's gradient held against the one in double precision, within what floats and decisions in doubt may do. */
 #include "oracle/gaussians/oracle_gradient_job.h"
 
-enum { RUN = 256, N_FIXED = 11, MOST_NUMBERS = N_FIXED + 3 * (CONIC_MAX_SH_DEGREE + 1) * (CONIC_MAX_SH_DEGREE + 1) };
+enum { RUN = ORACLE_GRADIENT_RUN };
 
 /* What the set-up in float, and the chain back, are off by, in units of the sum of their terms' sizes. Roundings of 0.4
  * units' deviation, fifty of a term, are within 13 units at 4.7 standard deviations; few of them are of whole terms. */
@@ -29,22 +29,23 @@ typedef struct gradient_judge_job {
 
 /* --- a Gaussian's numbers --- */
 
-static conic_gradient_kind kind_of_number(size_t at) {
-  return at < 3    ? CONIC_GRADIENT_MEAN
-         : at < 6  ? CONIC_GRADIENT_SCALE
-         : at < 10 ? CONIC_GRADIENT_ROTATION
-         : at < 11 ? CONIC_GRADIENT_OPACITY
-                   : CONIC_GRADIENT_SH;
+conic_gradient_kind conic_oracle_number_kind(size_t at) {
+  return at < 3                      ? CONIC_GRADIENT_MEAN
+         : at < 6                    ? CONIC_GRADIENT_SCALE
+         : at < 10                   ? CONIC_GRADIENT_ROTATION
+         : at < 11                   ? CONIC_GRADIENT_OPACITY
+         : at < ORACLE_FIXED_NUMBERS ? CONIC_GRADIENT_PLACE
+                                     : CONIC_GRADIENT_SH;
 }
 
-static size_t place_in_kind(size_t at) {
-  static const size_t begin[CONIC_N_GRADIENT_KINDS] = {0, 3, 6, 10, 11};
-  return at - begin[kind_of_number(at)];
+size_t conic_oracle_place_in_kind(size_t at) {
+  static const size_t begin[CONIC_N_GRADIENT_KINDS] = {0, 3, 6, 10, ORACLE_FIXED_NUMBERS, 11};
+  return at - begin[conic_oracle_number_kind(at)];
 }
 
-static double number_in_gradient(const conic_gaussian_gradient *g, size_t i, size_t at) {
-  const size_t n_sh = 3 * (size_t)(g->sh_degree + 1) * (size_t)(g->sh_degree + 1), k = place_in_kind(at);
-  switch (kind_of_number(at)) {
+double conic_oracle_number_in(const conic_gaussian_gradient *g, size_t i, size_t at) {
+  const size_t n_sh = 3 * (size_t)(g->sh_degree + 1) * (size_t)(g->sh_degree + 1), k = conic_oracle_place_in_kind(at);
+  switch (conic_oracle_number_kind(at)) {
   case CONIC_GRADIENT_MEAN:
     return g->mean[k][i];
   case CONIC_GRADIENT_SCALE:
@@ -55,13 +56,15 @@ static double number_in_gradient(const conic_gaussian_gradient *g, size_t i, siz
     return g->opacity[i];
   case CONIC_GRADIENT_SH:
     return k < n_sh ? g->sh[i * n_sh + k] : 0.0;
+  case CONIC_GRADIENT_PLACE:
+    return g->place[k][i];
   }
   return 0.0;
 }
 
-static double number_in_parameters(const oracle_parameters *p, size_t at) {
-  const size_t k = place_in_kind(at);
-  switch (kind_of_number(at)) {
+double conic_oracle_number_of(const oracle_parameters *p, const double *sums, size_t at) {
+  const size_t k = conic_oracle_place_in_kind(at);
+  switch (conic_oracle_number_kind(at)) {
   case CONIC_GRADIENT_MEAN:
     return p->mean[k];
   case CONIC_GRADIENT_SCALE:
@@ -72,14 +75,16 @@ static double number_in_parameters(const oracle_parameters *p, size_t at) {
     return p->opacity;
   case CONIC_GRADIENT_SH:
     return p->sh[k];
+  case CONIC_GRADIENT_PLACE:
+    return sums[BY_PLACE + k];
   }
   return 0.0;
 }
 
 /* What a number is multiplied by where stored values are meant. */
-static double raw_factor(const oracle_gradient_job *j, size_t i, size_t at) {
+double conic_oracle_raw_factor(const oracle_gradient_job *j, size_t i, size_t at) {
   const double o = (double)j->set->opacity[i];
-  if (!j->gradient->is_raw || (kind_of_number(at) != CONIC_GRADIENT_SCALE && at != 10))
+  if (!j->gradient->is_raw || (conic_oracle_number_kind(at) != CONIC_GRADIENT_SCALE && at != 10))
     return 1.0;
   return at == 10 ? fabs(o * (1.0 - o)) : j->set->scale[at - 3] ? fabs((double)j->set->scale[at - 3][i]) : 0.0;
 }
@@ -94,12 +99,17 @@ static double share_of_form(const oracle_gradient_job *j, size_t i) {
   return oracle_max(share, off->form[1] / sqrt(s->form[0] * s->form[2]));
 }
 
-static void bound_numbers(const oracle_gradient_job *j, size_t i, size_t n, double *bound, double *slack) {
+void conic_oracle_bound_numbers(const oracle_gradient_job *j, size_t i, size_t n, double *bound, double *slack) {
   const oracle_sum_bound *b = &j->judging->totals[i];
   double sizes[N_BY_SCREEN] = {0.0};
   oracle_parameters p;
   memset(bound, 0, n * sizeof *bound);
   memset(slack, 0, n * sizeof *slack);
+  int is_met = j->is_shown[i] != 0;
+  for (int k = 0; k < N_BY_ELLIPSE; k++)
+    is_met |= b->slack[k] > 0.0;
+  if (!is_met)
+    return;
   for (int k = 0; k < N_BY_ELLIPSE; k++) {
     double one[N_BY_SCREEN] = {0.0};
     oracle_camera_gradient camera = {.focal = {0.0}};
@@ -110,14 +120,15 @@ static void bound_numbers(const oracle_gradient_job *j, size_t i, size_t n, doub
     one[k] = 1.0;
     conic_oracle_gradient_chain(&j->view, &j->eye, j->set, i, NULL, one, &p, &camera);
     for (size_t at = 0; at < n; at++) {
-      bound[at] += fabs(number_in_parameters(&p, at)) * off;
-      slack[at] += crossed * fabs(number_in_parameters(&p, at)) * b->slack[k];
+      bound[at] += fabs(conic_oracle_number_of(&p, one, at)) * off;
+      slack[at] += crossed * fabs(conic_oracle_number_of(&p, one, at)) * b->slack[k];
     }
   }
   const double share = n_chain_units * ORACLE_FLOAT_UNIT + 2.0 * share_of_form(j, i);
   conic_oracle_gradient_sizes(&j->view, j->set, i, sizes, &p);
   for (size_t at = 0; at < n; at++)
-    bound[at] += share * number_in_parameters(&p, at);
+    bound[at] +=
+        conic_oracle_number_kind(at) == CONIC_GRADIENT_PLACE ? 0.0 : share * conic_oracle_number_of(&p, sizes, at);
 }
 
 /* --- the verdict --- */
@@ -151,28 +162,27 @@ static conic_gaussian_class class_of_number(double found, double value, double b
                                                                                 : CONIC_PIXEL_WRONG;
 }
 
+int conic_oracle_is_open(const oracle_gradient_job *j, size_t i) {
+  const uint32_t followed =
+      1u << CONIC_DOUBT_LEAST | 1u << CONIC_DOUBT_ORDER | 1u << CONIC_DOUBT_END | 1u << CONIC_DOUBT_MOST;
+  return j->judging->totals[i].is_open || j->gradient->doubt[i] & ~followed;
+}
+
 static void judge_gaussian(const gradient_judge_job *job, size_t i, judge_run *run) {
   const oracle_gradient_job *j = job->j;
-  const size_t n = N_FIXED + 3 * (size_t)(j->set->sh_degree + 1) * (size_t)(j->set->sh_degree + 1);
-  const uint32_t open =
-      ~(1u << CONIC_DOUBT_LEAST | 1u << CONIC_DOUBT_ORDER | 1u << CONIC_DOUBT_END | 1u << CONIC_DOUBT_MOST);
-  const oracle_sum_bound *b = &j->judging->totals[i];
-  const int is_open = b->is_open || j->gradient->doubt[i] & open;
-  double bound[MOST_NUMBERS] = {0.0}, slack[MOST_NUMBERS] = {0.0}, worst = -1.0;
+  const size_t n = ORACLE_FIXED_NUMBERS + 3 * (size_t)(j->set->sh_degree + 1) * (size_t)(j->set->sh_degree + 1);
+  const int is_open = conic_oracle_is_open(j, i);
+  double bound[ORACLE_MOST_NUMBERS] = {0.0}, slack[ORACLE_MOST_NUMBERS] = {0.0}, worst = -1.0;
   conic_gaussian_class class = CONIC_PIXEL_EQUAL;
   conic_gradient_fault fault = {.gaussian = i};
   unsigned wrong = 0;
-  for (int k = 0, is_met = j->is_shown[i] != 0; k < N_BY_ELLIPSE; k++)
-    if (is_met || b->slack[k] > 0.0) {
-      bound_numbers(j, i, n, bound, slack);
-      break;
-    }
+  conic_oracle_bound_numbers(j, i, n, bound, slack);
   for (size_t at = 0; at < n; at++) {
-    const conic_gradient_kind kind = kind_of_number(at);
+    const conic_gradient_kind kind = conic_oracle_number_kind(at);
     if (job->theirs->lacks >> kind & 1 || (kind == CONIC_GRADIENT_SCALE && !j->set->scale[at - 3]))
       continue;
-    const double found = number_in_gradient(job->theirs, i, at), value = number_in_gradient(j->gradient, i, at);
-    const double factor = raw_factor(j, i, at), room = factor * bound[at], more = factor * slack[at];
+    const double found = conic_oracle_number_in(job->theirs, i, at), value = conic_oracle_number_in(j->gradient, i, at);
+    const double factor = conic_oracle_raw_factor(j, i, at), room = factor * bound[at], more = factor * slack[at];
     const conic_gaussian_class own = class_of_number(found, value, room, more, is_open);
     const double off = oracle_is_finite(found) ? fabs(found - value) : INFINITY;
     class = own > class ? own : class;
@@ -182,8 +192,8 @@ static void judge_gaussian(const gradient_judge_job *job, size_t i, judge_run *r
     if (own != CONIC_PIXEL_WRONG)
       continue;
     wrong |= 1u << kind;
-    conic_gradient_fault f = {i,     (int)kind,           (int)place_in_kind(at), found,
-                              value, value - room - more, value + room + more};
+    conic_gradient_fault f = {
+        i, (int)kind, (int)conic_oracle_place_in_kind(at), found, value, value - room - more, value + room + more};
     if (fault_severity(job, &f) > worst) {
       worst = fault_severity(job, &f);
       fault = f;
@@ -194,6 +204,7 @@ static void judge_gaussian(const gradient_judge_job *job, size_t i, judge_run *r
   run->classes[class]++;
   if (job->classes)
     job->classes[i] = (uint8_t) class;
+  j->wrong_kinds[i] = (uint8_t)wrong;
   if (wrong)
     put_gradient_fault(job, &fault, run->worst, &run->n_worst);
 }
@@ -223,11 +234,12 @@ static void add_runs(const gradient_judge_job *job, size_t n_runs, conic_gradien
 
 static conic_status judge_all_gaussians(gradient_judge_job *job, conic_gradient_verdict *verdict) {
   const size_t n = job->j->set->count, n_runs = (n + RUN - 1) / RUN;
-  const size_t n_numbers = N_FIXED + 3 * (size_t)(job->j->set->sh_degree + 1) * (size_t)(job->j->set->sh_degree + 1);
+  const size_t n_numbers =
+      ORACLE_FIXED_NUMBERS + 3 * (size_t)(job->j->set->sh_degree + 1) * (size_t)(job->j->set->sh_degree + 1);
   for (size_t i = 0; i < n; i++)
     for (size_t at = 0; at < n_numbers; at++) {
-      double *greatest = &job->greatest[kind_of_number(at)];
-      *greatest = oracle_max(*greatest, fabs(number_in_gradient(job->j->gradient, i, at)));
+      double *greatest = &job->greatest[conic_oracle_number_kind(at)];
+      *greatest = oracle_max(*greatest, fabs(conic_oracle_number_in(job->j->gradient, i, at)));
     }
   job->runs = conic_memory_allocate_zeroed(job->j->context, n_runs, sizeof *job->runs);
   if (!job->runs)
@@ -335,6 +347,7 @@ conic_status conic_gaussian_gradient_judge(conic_context *context, const conic_g
                                            const conic_gaussian_gradient *theirs, uint8_t *classes,
                                            conic_gradient_verdict *verdict) {
   conic_gaussian_gradient gradient;
+  uint8_t *own_kinds = NULL;
   oracle_gradient_judging judging = {.model = NULL};
   oracle_entry e;
   oracle_gradient_job j;
@@ -346,6 +359,10 @@ conic_status conic_gaussian_gradient_judge(conic_context *context, const conic_g
   j.model = judging.model = &e.model;
   j.judging = &judging;
   status = check_theirs(context, set, &e.options, theirs);
+  if (status == CONIC_OK && !j.wrong_kinds) {
+    j.wrong_kinds = own_kinds = conic_memory_allocate(context, set->count, 1);
+    status = own_kinds ? CONIC_OK : CONIC_ERROR_MEMORY;
+  }
   if (status == CONIC_OK)
     status = prepare_judging(&j, &e);
   if (status == CONIC_OK)
@@ -355,7 +372,10 @@ conic_status conic_gaussian_gradient_judge(conic_context *context, const conic_g
   if (status == CONIC_OK) {
     gradient_judge_job job = {.j = &j, .theirs = theirs, .classes = classes};
     status = judge_all_gaussians(&job, verdict);
+    if (status == CONIC_OK && !verdict->pass)
+      status = conic_oracle_name_mistakes(&j, theirs, verdict);
   }
+  conic_memory_release(context, own_kinds);
   conic_oracle_judging_end(&j);
   conic_oracle_gradient_end(&j);
   conic_gaussian_gradient_release(context, &gradient);

@@ -213,8 +213,9 @@ static void ray_met_back(const oracle_gaussian_view *view, const oracle_gradient
 void conic_oracle_gradient_back(const oracle_gaussian_view *view, const oracle_gradient_pixel *pixel,
                                 const oracle_shown *shown, const oracle_met *met, double by_alpha, double *sums) {
   const double weight = met->alpha * met->before;
-  const double by_q = met->is_most ? 0.0 : -0.5 * met->alpha * by_alpha;
-  sums[BY_OPACITY] += met->is_most ? 0.0 : by_alpha * met->response;
+  const int is_held = met->is_most && !pixel->passes_most;
+  const double by_q = is_held ? 0.0 : -0.5 * (met->is_most ? shown->opacity * met->response : met->alpha) * by_alpha;
+  sums[BY_OPACITY] += is_held ? 0.0 : by_alpha * met->response;
   for (int c = 0; c < 3; c++)
     sums[BY_COLOR + c] += pixel->weights[c] * weight;
   if (view->rules->shape == CONIC_SHAPE_RAY) {

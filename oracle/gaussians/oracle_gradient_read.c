@@ -52,6 +52,8 @@ static gradient_target find_gradient_target(conic_gaussian_gradient *g, const ch
     return (gradient_target){g->scale[k], 1};
   if ((k = number_behind(name, "rot_")) >= 0 && k < 4)
     return (gradient_target){g->rotation[k], 1};
+  if (strncmp(name, "place_", 6) == 0 && (name[6] == 'x' || name[6] == 'y') && name[7] == '\0')
+    return (gradient_target){g->place[name[6] - 'x'], 1};
   return (gradient_target){strcmp(name, "opacity") == 0 ? g->opacity : NULL, 1};
 }
 
@@ -78,7 +80,8 @@ static int find_gradient_kinds(const conic_ply_header *header, const conic_ply_e
                                                                {"scale_0", "scale_1", "scale_1", "scale_1"},
                                                                {"rot_0", "rot_1", "rot_2", "rot_3"},
                                                                {"opacity", "opacity", "opacity", "opacity"},
-                                                               {"f_dc_0", "f_dc_1", "f_dc_2", "f_dc_0"}};
+                                                               {"f_dc_0", "f_dc_1", "f_dc_2", "f_dc_0"},
+                                                               {"place_x", "place_y", "place_y", "place_y"}};
   size_t n_rest = 0;
   for (int kind = 0; kind < CONIC_N_GRADIENT_KINDS; kind++)
     for (int k = 0; k < 4; k++)
@@ -120,8 +123,8 @@ static conic_status read_gradient_ply(conic_context *context, conic_input *input
 
 /* --- .npz --- */
 
-static const char *const npz_names[CONIC_N_GRADIENT_KINDS] = {"means.npy", "scales.npy", "quats.npy", "opacities.npy",
-                                                              "sh.npy"};
+static const char *const npz_names[CONIC_N_GRADIENT_KINDS] = {"means.npy",     "scales.npy", "quats.npy",
+                                                              "opacities.npy", "sh.npy",     "means2d.npy"};
 
 typedef struct gradient_arrays {
   unsigned char *blocks[CONIC_N_GRADIENT_KINDS];
@@ -146,6 +149,7 @@ static conic_status open_gradient_array(conic_context *context, const conic_zip 
   const int is_right = kind == CONIC_GRADIENT_SH        ? columns % 3 == 0 && degree_of_harmonics(columns / 3) >= 0
                        : kind == CONIC_GRADIENT_SCALE   ? columns == 2 || columns == 3
                        : kind == CONIC_GRADIENT_OPACITY ? columns == 1
+                       : kind == CONIC_GRADIENT_PLACE   ? columns == 2
                                                         : columns == (kind == CONIC_GRADIENT_MEAN ? 3 : 4);
   if (!is_right || n == 0 || (a->n && a->n != n))
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: %s has no shape of a gradient, or of other rows (at byte 0)",
@@ -156,7 +160,8 @@ static conic_status open_gradient_array(conic_context *context, const conic_zip 
 }
 
 static void take_gradient_arrays(const gradient_arrays *a, conic_gaussian_gradient *g) {
-  double *const *const columns[CONIC_N_GRADIENT_KINDS] = {g->mean, g->scale, g->rotation, &g->opacity, &g->sh};
+  double *const *const columns[CONIC_N_GRADIENT_KINDS] = {g->mean,     g->scale, g->rotation,
+                                                          &g->opacity, &g->sh,   g->place};
   for (int kind = 0; kind < CONIC_N_GRADIENT_KINDS; kind++) {
     const size_t n = a->n_columns[kind];
     note_kind(g, (conic_gradient_kind)kind, n > 0);
@@ -180,7 +185,7 @@ static conic_status read_gradient_npz(conic_context *context, const char *path, 
     status = open_gradient_array(context, &zip, kind, &a);
   if (status == CONIC_OK && a.n == 0)
     status = conic_fail(context, CONIC_ERROR_INPUT,
-                        "%s: it has none of means, scales, quats, opacities and sh (at byte 0)", path);
+                        "%s: it has none of means, scales, quats, opacities, sh and means2d (at byte 0)", path);
   const size_t n_sh = a.n_columns[CONIC_GRADIENT_SH] / 3;
   if (status == CONIC_OK)
     status = conic_oracle_gradient_room(context, a.n, n_sh ? degree_of_harmonics(n_sh) : 0, 1, g);
