@@ -17,6 +17,8 @@ static void show_gaussians(void *data, size_t i_run) {
   for (size_t i = i_run * SHOW_RUN; i < (i_run + 1) * SHOW_RUN && i < j->set->count; i++)
     if (!conic_oracle_show(&j->view, j->set, i, &j->shown[i]))
       j->shown[i] = (oracle_shown){.first = {1, 1}};
+    else if (j->noise)
+      conic_oracle_disturb_shown(j->noise, j->seed, &j->shown[i]);
 }
 
 CONIC_DEFINE_ORDER_BY_TWO(compare_ranks, shown_rank, key, index)
@@ -104,6 +106,8 @@ static size_t meet_all_shown(const oracle_gradient_job *j, gradient_worker *w, s
     if (x < s->first[0] || x > s->last[0] || y < s->first[1] || y > s->last[1] ||
         conic_oracle_meet_shown(&j->view, s, (double)x + 0.5, (double)y + 0.5, &w->met[n_met]) != ORACLE_COVERS)
       continue;
+    if (j->noise)
+      conic_oracle_disturb_met(j, s, (double)x + 0.5, (double)y + 0.5, &w->met[n_met]);
     w->met[n_met].entry = (uint32_t)i;
     T *= 1.0 - w->met[n_met++].alpha;
     if (is_sorted && T < 0.5 * j->view.rules->stop)
@@ -123,11 +127,14 @@ static double differentiate_pixel(const oracle_gradient_job *j, gradient_worker 
     return 0.0;
   size_t n_met = meet_all_shown(j, w, n, x, y);
   const double loss = conic_oracle_gradient_forth(&j->view, &pixel, w->shown, w->met, &n_met, &behind);
-  for (size_t i = n_met; i-- > 0;) {
+  for (size_t i = 0; i < n_met; i++)
+    is_touched[w->met[i].entry] = 1;
+  if (j->noise)
+    conic_oracle_disturbed_back(j, &pixel, w->shown, w->met, n_met, behind, sums);
+  for (size_t i = n_met; i-- > 0 && !j->noise;) {
     const oracle_met *m = &w->met[i];
     conic_oracle_gradient_back(&j->view, &pixel, w->shown[m->entry], m, m->before * (m->by_weight - behind),
                                sums[m->entry]);
-    is_touched[m->entry] = 1;
     behind = m->alpha * m->by_weight + (1.0 - m->alpha) * behind;
   }
   return loss;

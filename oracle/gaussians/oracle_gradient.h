@@ -86,7 +86,9 @@ typedef struct oracle_eye {
   double inverse[3][3], place[3];
 } oracle_eye;
 
-/* From what it is at the pixels to its parameters; the camera's part is added. `model` may be null: no doubts. */
+/* From what it is at the pixels to its parameters; the camera's part is added. `model` may be null: no doubts; and
+ * `form`: the Gaussian's own. */
 void conic_oracle_gradient_chain(const oracle_gaussian_view *view, const oracle_eye *eye,
                                  const conic_gaussians *gaussians, size_t i, const conic_float_model *model,
-                                 const double *sums, oracle_parameters *to, oracle_camera_gradient *camera);
+                                 const double *form, const double *sums, oracle_parameters *to,
+                                 oracle_camera_gradient *camera);

@@ -1,11 +1,5 @@
-/* How far off a program of floats may be in a pixel's part of the derivative.
- *
- * Roundings: an error of first order is carried from what the pixel sees of each Gaussian to α, from there to T and to
- * the light from behind, and from these to every term. Other programs begin with the T that is left in the end. They
- * divide it by the 1 − α that they have multiplied by, so that only roundings come anew. Errors of different Gaussians
- * are independent and add in squares. Errors of different pixels may depend on each other and add up.
- *
- * Decisions in doubt: each is followed the other way by itself, and what that changes is added up. */
+/* What decisions in doubt may change in a pixel's part of the derivative: each is followed the other way by itself, and
+ * what that changes is added up. α's and T's roundings, which put them in doubt, are of first order. */
 
 #include "core/base/radix.h"
 #include "oracle/gaussians/oracle_gradient_job.h"
@@ -44,8 +38,6 @@ typedef struct pixel_bound {
   int n_variants;
 } pixel_bound;
 
-/* --- the roundings --- */
-
 static double share_of_alpha(const pixel_bound *p, const oracle_shown *s, const oracle_met *m) {
   const conic_float_model *model = p->j->judging->model;
   const oracle_shown_off *off = &p->j->judging->offs[s->index];
@@ -60,102 +52,10 @@ static double share_of_alpha(const pixel_bound *p, const oracle_shown *s, const 
          2.0 * UNIT;
 }
 
-/* One term each, and how far it may be off; by_alpha: dL/dα, and its error. */
-static void bound_terms(const pixel_bound *p, const oracle_met *m, const met_error *of, double by_alpha,
-                        double off_alpha) {
-  const oracle_shown *s = p->w->shown[m->entry];
-  const oracle_shown_off *off = &p->j->judging->offs[s->index];
-  oracle_sum_bound *b = &p->bounds[m->entry];
-  const double w = m->alpha * m->before, *weights = p->pixel.weights, u = 4.0 * UNIT, rho = of->rho;
-  double term[N_BY_ELLIPSE] = {0.0}, error[N_BY_ELLIPSE] = {0.0};
-  for (int c = 0; c < 3; c++) {
-    term[BY_COLOR + c] = weights[c] * w;
-    error[BY_COLOR + c] = fabs(weights[c] * w) * (of->tau + rho + u);
-  }
-  term[BY_Z] = m->by_z;
-  error[BY_Z] = fabs(m->by_z) * (of->tau + p->tau + rho + u);
-  if (!m->is_most) {
-    const double d[2] = {s->place[0] - p->pixel.x, s->place[1] - p->pixel.y};
-    const double by_q = -0.5 * m->alpha * by_alpha;
-    const double off_q = 0.5 * m->alpha * (off_alpha + fabs(by_alpha) * (rho + u));
-    term[BY_OPACITY] = by_alpha * m->response;
-    error[BY_OPACITY] = m->response * (off_alpha + fabs(by_alpha) * (rho + u));
-    for (int a = 0; a < 2; a++) {
-      const double f = s->form[2 * a], g = s->form[1], size = fabs(f * d[a]) + fabs(g * d[1 - a]);
-      const double shift = off->form[2 * a] * fabs(d[a]) + off->form[1] * fabs(d[1 - a]) + fabs(f) * off->place[a] +
-                           fabs(g) * off->place[1 - a] + u * size;
-      term[BY_PLACE + a] = 2.0 * by_q * (f * d[a] + g * d[1 - a]);
-      error[BY_PLACE + a] = 2.0 * (off_q * size + fabs(by_q) * shift);
-    }
-    for (int k = 0; k < 3; k++) {
-      const int i = k == 2, l = k > 0;
-      const double share = k == 1 ? 2.0 : 1.0, square = d[i] * d[l];
-      const double shift = off->place[i] * fabs(d[l]) + off->place[l] * fabs(d[i]) + u * fabs(square);
-      term[BY_FORM + k] = share * by_q * square;
-      error[BY_FORM + k] = share * (off_q * fabs(square) + fabs(by_q) * shift);
-    }
-  }
-  b->n++;
-  for (int k = 0; k < N_BY_ELLIPSE; k++) {
-    b->off[k] += error[k];
-    b->size[k] += fabs(term[k]);
-  }
-}
-
-static double length_of_errors(const double e[4]) {
-  return sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + e[3] * e[3]);
-}
-
-/* Z, and how far the depths are from it in the mean: so much it moves where weights do. */
-static double spread_of_depths(const pixel_bound *p, size_t n, double *z) {
-  double sum = 0.0, apart = 0.0;
-  *z = 0.0;
-  for (size_t i = 0; i < n; i++) {
-    sum += p->v->list[i].alpha * p->v->list[i].before;
-    *z += p->v->list[i].alpha * p->v->list[i].before * p->v->list[i].z;
-  }
-  *z = sum > 0.0 ? *z / sum : 0.0;
-  for (size_t i = 0; i < n; i++)
-    apart += p->v->list[i].alpha * p->v->list[i].before * fabs(p->v->list[i].z - *z);
-  return sum > 0.0 ? apart / sum : 0.0;
-}
-
-/* The light behind, without regard to sign, and its error, go from back to front with the rest. */
-static void bound_roundings(const pixel_bound *p, size_t n, double behind) {
-  const double *w = p->pixel.weights;
-  double size = fabs(w[3]), error = 0.0;
-  for (int c = 0; c < 3; c++)
-    size += fabs(w[c] * (double)p->pixel.background[c]);
-  double z, spread = spread_of_depths(p, n, &z);
-  for (size_t i = n; i-- > 0;) {
-    const oracle_met *m = &p->v->list[i];
-    const met_error *of = &p->v->errors[i];
-    const oracle_shown *s = p->w->shown[m->entry];
-    const oracle_shown_off *off = &p->j->judging->offs[s->index];
-    double own = 0.0, own_error = fabs(m->by_weight) * 4.0 * UNIT;
-    for (int c = 0; c < 3; c++) {
-      own += fabs(w[c] * s->color[c]);
-      own_error += fabs(w[c]) * (off->color[c] + 4.0 * UNIT * fabs(s->color[c]));
-    }
-    if (m->by_z != 0.0) { /* (z − Z)/A */
-      double share = fabs(m->by_z) / (m->alpha * m->before);
-      own += share * 2.0 * fabs(m->z);
-      own_error += share * (off->z + fabs(m->z) * ((double)n + 8.0) * UNIT + 2.0 * p->tau * (spread + fabs(m->z - z)));
-    }
-    const double apart = fabs(m->by_weight - behind), left = oracle_max(1.0 - m->alpha, UNIT);
-    const double rounded = (2.0 * (double)(n - i) + 4.0 + 2.0 / left) * UNIT;
-    const double parts[4] = {apart * of->tau, own_error, error, (own + size) * rounded};
-    bound_terms(p, m, of, m->before * (m->by_weight - behind), m->before * length_of_errors(parts));
-    const double carried[4] = {m->alpha * apart * of->rho, m->alpha * own_error, (1.0 - m->alpha) * error, 0.0};
-    error = length_of_errors(carried);
-    size = m->alpha * own + (1.0 - m->alpha) * size;
-    behind = m->alpha * m->by_weight + (1.0 - m->alpha) * behind;
-  }
-}
-
 /* --- decisions the other way --- */
 
-static void run_variant(const pixel_bound *p, size_t n, int goes_on, double (*sums)[N_BY_ELLIPSE]) {
+/* Returns how many of the list are composited. */
+static size_t run_variant(const pixel_bound *p, size_t n, int goes_on, double (*sums)[N_BY_ELLIPSE]) {
   oracle_gradient_pixel pixel = p->pixel;
   double behind;
   pixel.goes_on = goes_on;
@@ -168,6 +68,7 @@ static void run_variant(const pixel_bound *p, size_t n, int goes_on, double (*su
                                sums[m->entry]);
     behind = m->alpha * m->by_weight + (1.0 - m->alpha) * behind;
   }
+  return n;
 }
 
 /* What the list makes other than it is. */
@@ -286,10 +187,13 @@ void conic_oracle_bound_pixel_gradient(const oracle_gradient_job *j, const gradi
     return;
   meet_all_that_may(&p, n, x, y);
   size_t n_met = list_covering(&p, (size_t)-1);
-  double behind;
-  run_variant(&p, n_met, 0, p.v->base);
-  conic_oracle_gradient_forth(&j->view, &p.pixel, w->shown, p.v->list, &n_met, &behind);
-  bound_roundings(&p, n_met, behind);
+  n_met = run_variant(&p, n_met, 0, p.v->base);
+  for (size_t i = 0; i < n_met; i++) {
+    oracle_sum_bound *b = &bounds[p.v->list[i].entry];
+    b->n++;
+    for (int k = 0; k < N_BY_ELLIPSE; k++)
+      b->size[k] += fabs(p.v->base[p.v->list[i].entry][k]);
+  }
   follow_end(&p, n_met);
   for (size_t i = 0; i < p.n_all; i++)
     follow_least_and_most(&p, i);
@@ -300,7 +204,6 @@ void conic_oracle_bound_pixel_gradient(const oracle_gradient_job *j, const gradi
 
 void conic_oracle_add_gradient_bound(oracle_sum_bound *to, const oracle_sum_bound *from) {
   for (int k = 0; k < N_BY_ELLIPSE; k++) {
-    to->off[k] += from->off[k];
     to->size[k] += from->size[k];
     to->slack[k] += from->slack[k];
   }
@@ -331,5 +234,5 @@ void conic_oracle_judging_end(oracle_gradient_job *j) {
     conic_memory_release_these(j->context, g->of_threads[k].all, g->of_threads[k].list, g->of_threads[k].errors,
                                g->of_threads[k].base, g->of_threads[k].other);
   }
-  conic_memory_release_these(j->context, g->offs, g->bounds, g->totals, g->is_open_pixel, g->of_threads);
+  conic_memory_release_these(j->context, g->offs, g->bounds, g->totals, g->is_open_pixel, g->of_threads, g->samples);
 }

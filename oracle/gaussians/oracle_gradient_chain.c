@@ -254,13 +254,15 @@ static void color_back(const oracle_gaussian_view *view, const oracle_eye *eye, 
 }
 
 void conic_oracle_gradient_chain(const oracle_gaussian_view *view, const oracle_eye *eye, const conic_gaussians *set,
-                                 size_t i, const conic_float_model *model, const double *sums, oracle_parameters *to,
-                                 oracle_camera_gradient *camera) {
+                                 size_t i, const conic_float_model *model, const double *form, const double *sums,
+                                 oracle_parameters *to, oracle_camera_gradient *camera) {
   oracle_gaussian g;
   space_gradient space = {0};
   double mean[3];
   memset(to, 0, sizeof *to);
   conic_oracle_gaussian_place(view, set, i, &g);
+  if (form)
+    memcpy(g.form, form, sizeof g.form);
   for (int axis = 0; axis < 3; axis++)
     mean[axis] = set->origin[axis] + (double)set->position[axis][i];
   if (view->rules->shape == CONIC_SHAPE_RAY)

@@ -79,7 +79,7 @@ static void chain_run(void *data, size_t i_run) {
     oracle_parameters p;
     if (!j->is_shown[i])
       continue;
-    conic_oracle_gradient_chain(&j->view, &j->eye, j->set, i, j->model, j->totals[i], &p, &j->cameras[i_run]);
+    conic_oracle_gradient_chain(&j->view, &j->eye, j->set, i, j->model, NULL, j->totals[i], &p, &j->cameras[i_run]);
     hand_out(j, i, &p);
   }
 }

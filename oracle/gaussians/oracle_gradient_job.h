@@ -14,7 +14,6 @@ typedef struct oracle_gradient_job oracle_gradient_job;
 
 /* What of a sum over pixels is not certain. */
 typedef struct oracle_sum_bound {
-  double off[N_BY_ELLIPSE];   /* by the roundings of its terms */
   double size[N_BY_ELLIPSE];  /* of the terms, without regard to sign */
   double slack[N_BY_ELLIPSE]; /* by decisions in doubt */
   uint32_t n, is_open;        /* pixels; whether a decision is in doubt whose other answer is not followed */
@@ -23,7 +22,11 @@ typedef struct oracle_sum_bound {
 /* How far off floats may have what a pixel sees of a Gaussian. */
 typedef struct oracle_shown_off {
   double place[2], form[3], opacity, color[3], z, key;
+  double spread[2]; /* of the covariance's terms, in pixels; 0 where it is set up in double */
 } oracle_shown_off;
+
+/* What the set-up in float is off by at most, in units of its terms' sizes; and how often roundings are tried. */
+enum { ORACLE_SETUP_UNITS = 8, ORACLE_ROUNDING_SAMPLES = 6 };
 
 typedef struct oracle_gradient_judging {
   const conic_float_model *model;
@@ -31,6 +34,7 @@ typedef struct oracle_gradient_judging {
   oracle_sum_bound *bounds, *totals;    /* of each entry of the band; of each Gaussian */
   char *is_open_pixel;                  /* of each pixel */
   struct gradient_variants *of_threads; /* by thread */
+  double (*samples)[N_BY_SCREEN];       /* by rounding sample: the totals of each Gaussian */
 } oracle_gradient_judging;
 
 struct oracle_gradient_job {
@@ -55,11 +59,13 @@ struct oracle_gradient_job {
   double *losses;                /* of its cells */
   double (*totals)[N_BY_SCREEN]; /* of each Gaussian */
   char *is_shown;
-  oracle_camera_gradient *cameras;  /* of each run of Gaussians */
-  uint16_t *doubts;                 /* of each Gaussian, by each thread */
-  oracle_gradient_judging *judging; /* null: nothing is judged */
-  int passes_most;                  /* oracle_gradient_pixel */
-  uint8_t *wrong_kinds;             /* conic_gradient_options */
+  oracle_camera_gradient *cameras;      /* of each run of Gaussians */
+  uint16_t *doubts;                     /* of each Gaussian, by each thread */
+  oracle_gradient_judging *judging;     /* null: nothing is judged */
+  int passes_most;                      /* oracle_gradient_pixel */
+  const oracle_gradient_judging *noise; /* whose roundings come in by chance; null: none */
+  uint64_t seed;                        /* of these */
+  uint8_t *wrong_kinds;                 /* conic_gradient_options */
 };
 
 /* Fills in the totals, is_shown and the loss. Errors: MEMORY, CANCELLED. */
@@ -85,6 +91,18 @@ void conic_oracle_judging_end(oracle_gradient_job *job);
 void conic_oracle_bound_pixel_gradient(const oracle_gradient_job *job, const gradient_worker *worker, size_t n,
                                        size_t x, size_t y, int i_thread, oracle_sum_bound *bounds);
 void conic_oracle_add_gradient_bound(oracle_sum_bound *to, const oracle_sum_bound *from);
+
+/* Roundings by chance: of the form of Gaussian i; of all that pixels see of it; of one that covers a pixel; and of what
+ * goes back over a pixel's Gaussians. */
+void conic_oracle_disturb_form(const oracle_gradient_judging *noise, uint64_t seed, size_t i, double form[3]);
+void conic_oracle_disturb_shown(const oracle_gradient_judging *noise, uint64_t seed, oracle_shown *shown);
+void conic_oracle_disturb_met(const oracle_gradient_job *job, const oracle_shown *shown, double x, double y,
+                              oracle_met *met);
+void conic_oracle_disturbed_back(const oracle_gradient_job *job, const oracle_gradient_pixel *pixel,
+                                 const oracle_shown *const *shown, oracle_met *met, size_t n, double behind,
+                                 double (*sums)[N_BY_SCREEN]);
+/* Fills in judging->samples. Errors: MEMORY, CANCELLED. */
+conic_status conic_oracle_sample_roundings(const oracle_gradient_job *job);
 
 /* A gradient of zeros. Errors: MEMORY. */
 conic_status conic_oracle_gradient_room(conic_context *context, size_t n, int sh_degree, int has_third_scale,

@@ -5,10 +5,12 @@ enum { RUN = ORACLE_GRADIENT_RUN };
 
 /* What the set-up in float, and the chain back, are off by, in units of the sum of their terms' sizes. Roundings of 0.4
  * units' deviation, fifty of a term, are within 13 units at 4.7 standard deviations; few of them are of whole terms. */
-static const double n_setup_units = 8.0, n_chain_units = 16.0;
+static const double n_setup_units = ORACLE_SETUP_UNITS, n_chain_units = 16.0;
 /* A sum of n terms in whatever order is off by √n units of the terms' sizes, 8 times at most: roundings are as good as
  * independent. */
 static const double n_sum_deviations = 8.0;
+/* Of the deviation of samples, which are few. */
+static const double n_sample_deviations = 8.0;
 /* Two decisions at once may change more than each by itself, by as much as a Gaussian at its least hides. */
 static const double crossed = 1.1;
 
@@ -91,17 +93,39 @@ double conic_oracle_raw_factor(const oracle_gradient_job *j, size_t i, size_t at
 
 /* --- its bounds --- */
 
-/* How far off the form may be, by the measure of its diagonal. */
-static double share_of_form(const oracle_gradient_job *j, size_t i) {
-  const oracle_shown *s = &j->shown[i];
-  const oracle_shown_off *off = &j->judging->offs[i];
-  double share = oracle_max(off->form[0] / s->form[0], off->form[2] / s->form[2]);
-  return oracle_max(share, off->form[1] / sqrt(s->form[0] * s->form[2]));
+/* By how much samples of roundings move the numbers, in the mean of squares. A sample of few may be small by chance,
+ * which the numbers of the same kind make up for. */
+static void spread_of_samples(const oracle_gradient_job *j, size_t i, size_t n, double *spread) {
+  double of_kinds[CONIC_N_GRADIENT_KINDS] = {0.0};
+  size_t n_of_kinds[CONIC_N_GRADIENT_KINDS] = {0};
+  oracle_camera_gradient camera = {.focal = {0.0}};
+  oracle_parameters right, p;
+  conic_oracle_gradient_chain(&j->view, &j->eye, j->set, i, NULL, NULL, j->totals[i], &right, &camera);
+  memset(spread, 0, n * sizeof *spread);
+  for (uint64_t s = 0; s < ORACLE_ROUNDING_SAMPLES; s++) {
+    const double *sums = j->judging->samples[s * j->set->count + i];
+    double form[3];
+    memcpy(form, j->shown[i].form, sizeof form);
+    conic_oracle_disturb_form(j->judging, s + 1, i, form);
+    conic_oracle_gradient_chain(&j->view, &j->eye, j->set, i, NULL, form, sums, &p, &camera);
+    for (size_t at = 0; at < n; at++) {
+      const double off = conic_oracle_number_of(&p, sums, at) - conic_oracle_number_of(&right, j->totals[i], at);
+      spread[at] += off * off / ORACLE_ROUNDING_SAMPLES;
+    }
+  }
+  for (size_t at = 0; at < n; at++) {
+    of_kinds[conic_oracle_number_kind(at)] += spread[at];
+    n_of_kinds[conic_oracle_number_kind(at)]++;
+  }
+  for (size_t at = 0; at < n; at++) {
+    const conic_gradient_kind kind = conic_oracle_number_kind(at);
+    spread[at] = sqrt(spread[at] + 0.25 * of_kinds[kind] / (double)n_of_kinds[kind]);
+  }
 }
 
 void conic_oracle_bound_numbers(const oracle_gradient_job *j, size_t i, size_t n, double *bound, double *slack) {
   const oracle_sum_bound *b = &j->judging->totals[i];
-  double sizes[N_BY_SCREEN] = {0.0};
+  double sizes[N_BY_SCREEN] = {0.0}, spread[ORACLE_MOST_NUMBERS];
   oracle_parameters p;
   memset(bound, 0, n * sizeof *bound);
   memset(slack, 0, n * sizeof *slack);
@@ -113,22 +137,23 @@ void conic_oracle_bound_numbers(const oracle_gradient_job *j, size_t i, size_t n
   for (int k = 0; k < N_BY_ELLIPSE; k++) {
     double one[N_BY_SCREEN] = {0.0};
     oracle_camera_gradient camera = {.focal = {0.0}};
-    const double off = b->off[k] + n_sum_deviations * sqrt((double)b->n) * ORACLE_FLOAT_UNIT * b->size[k];
+    const double off = n_sum_deviations * sqrt((double)b->n) * ORACLE_FLOAT_UNIT * b->size[k];
     sizes[k] = fabs(j->totals[i][k]) + off;
     if (!(off + b->slack[k] > 0.0))
       continue;
     one[k] = 1.0;
-    conic_oracle_gradient_chain(&j->view, &j->eye, j->set, i, NULL, one, &p, &camera);
+    conic_oracle_gradient_chain(&j->view, &j->eye, j->set, i, NULL, NULL, one, &p, &camera);
     for (size_t at = 0; at < n; at++) {
       bound[at] += fabs(conic_oracle_number_of(&p, one, at)) * off;
       slack[at] += crossed * fabs(conic_oracle_number_of(&p, one, at)) * b->slack[k];
     }
   }
-  const double share = n_chain_units * ORACLE_FLOAT_UNIT + 2.0 * share_of_form(j, i);
+  spread_of_samples(j, i, n, spread);
   conic_oracle_gradient_sizes(&j->view, j->set, i, sizes, &p);
-  for (size_t at = 0; at < n; at++)
-    bound[at] +=
-        conic_oracle_number_kind(at) == CONIC_GRADIENT_PLACE ? 0.0 : share * conic_oracle_number_of(&p, sizes, at);
+  for (size_t at = 0; at < n; at++) {
+    const double size = fabs(conic_oracle_number_of(&p, sizes, at));
+    bound[at] += n_chain_units * ORACLE_FLOAT_UNIT * size + n_sample_deviations * spread[at];
+  }
 }
 
 /* --- the verdict --- */
@@ -275,6 +300,8 @@ static void add_setup_in_float(const oracle_doubting *d, size_t i, const oracle_
   to->form[0] += unit * a * a;
   to->form[1] += unit * a * b;
   to->form[2] += unit * b * b;
+  to->spread[0] = x;
+  to->spread[1] = y;
   double far = fabs(camera->cam_from_world[2][3]);
   for (int axis = 0; axis < 3; axis++)
     far += fabs(camera->cam_from_world[2][axis] * (d->set->origin[axis] + (double)d->set->position[axis][i]));
@@ -369,6 +396,8 @@ conic_status conic_gaussian_gradient_judge(conic_context *context, const conic_g
     status = conic_oracle_differentiate(&j);
   if (status == CONIC_OK)
     status = conic_oracle_gradient_chain_all(&j);
+  if (status == CONIC_OK)
+    status = conic_oracle_sample_roundings(&j);
   if (status == CONIC_OK) {
     gradient_judge_job job = {.j = &j, .theirs = theirs, .classes = classes};
     status = judge_all_gaussians(&job, verdict);

@@ -168,7 +168,7 @@ static void take_gaussian(const naming_job *job, size_t i, named_gaussian *g) {
   for (int k = 0; k < N_BY_ELLIPSE; k++) {
     double one[N_BY_SCREEN] = {0.0};
     one[k] = j->totals[i][k];
-    conic_oracle_gradient_chain(&j->view, &j->eye, j->set, i, NULL, one, &p, &camera);
+    conic_oracle_gradient_chain(&j->view, &j->eye, j->set, i, NULL, NULL, one, &p, &camera);
     for (size_t at = 0; at < g->n; at++)
       g->parts[k][at] = conic_oracle_number_of(&p, one, at) * conic_oracle_raw_factor(j, i, at);
     for (int axis = 0; axis < 4; axis++)
