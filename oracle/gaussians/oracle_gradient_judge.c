@@ -302,13 +302,18 @@ static void add_setup_in_float(const oracle_doubting *d, size_t i, const oracle_
   to->form[2] += unit * b * b;
   to->spread[0] = x;
   to->spread[1] = y;
-  double far = fabs(camera->cam_from_world[2][3]);
-  for (int axis = 0; axis < 3; axis++)
-    far += fabs(camera->cam_from_world[2][axis] * (d->set->origin[axis] + (double)d->set->position[axis][i]));
+  double fars[3], far;
+  for (int row = 0; row < 3; row++) {
+    fars[row] = fabs(camera->cam_from_world[row][3]);
+    for (int axis = 0; axis < 3; axis++)
+      fars[row] += fabs(camera->cam_from_world[row][axis] * (d->set->origin[axis] + (double)d->set->position[axis][i]));
+  }
+  far = fars[2];
   to->z += unit * far;
   to->key += unit * (d->view->rules->orders_by_distance ? oracle_length(placed.mean) + far : far);
   for (int axis = 0; axis < 2; axis++)
-    to->place[axis] += unit * (fabs(placed.place_px[axis]) + size) * (1.0 + far / oracle_max(placed.mean[2], 1e-30));
+    to->place[axis] += unit * (fabs(placed.place_px[axis]) + size +
+                               s.focal[axis] / oracle_max(placed.mean[2], 1e-30) * (fars[axis] + s.slope[axis] * far));
   const double least = d->view->rules->compensation_least, o = fabs((double)d->set->opacity[i]);
   const double after = 1.0 / (placed.form[0] * placed.form[2] - placed.form[1] * placed.form[1]);
   if (least >= 0.0 && o > 0.0) { /* a share of the square root of a difference */
