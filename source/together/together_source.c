@@ -61,10 +61,12 @@ static conic_status read_scene(conic_context *context, const char *path, conic_g
   return status;
 }
 
-/* Puts a scene where it is to stand; one that is lent is copied for it. Errors: MEMORY. */
-static conic_status place_scene(conic_context *context, const conic_place *place, conic_gaussians *set, int *is_lent) {
+/* Puts a scene where it is to stand, in a frame whose letters say where x, y and z point; one that is lent is copied
+ * for it. Errors: MEMORY, ARGUMENT (the frames mirror each other). */
+static conic_status place_scene(conic_context *context, const conic_place *place, const char *frame,
+                                conic_gaussians *set, int *is_lent) {
   const conic_gaussians given = *set;
-  if (!place->is_moved)
+  if (!place->is_moved && strcmp(given.frame, frame) == 0)
     return CONIC_OK;
   if (*is_lent) {
     conic_status status =
@@ -78,6 +80,9 @@ static conic_status place_scene(conic_context *context, const conic_place *place
     memcpy(set->up, given.up, sizeof set->up);
     set->is_linear = given.is_linear;
   }
+  conic_status status = conic_gaussians_turn(context, set, frame);
+  if (status != CONIC_OK || !place->is_moved)
+    return status;
   double up[3];
   conic_gaussians_find_up(set, up);
   for (int axis = 0; axis < 3; axis++) /* which its frame does not say any more */
@@ -100,7 +105,7 @@ static conic_status read_scenes(conic_gaussians_source *g, const char *const *pa
     g->inputs[i].first_id = (uint32_t)count;
     status = read_scene(context, paths[i], &sets[n], &are_lent[n]);
     if (status == CONIC_OK)
-      status = place_scene(context, &places[i], &sets[n], &are_lent[n]);
+      status = place_scene(context, &places[i], sets[0].frame, &sets[n], &are_lent[n]);
     if (status == CONIC_OK)
       status = check_alike(context, &sets[0], &sets[n], paths[i]);
     count += sets[n++].count;
@@ -213,7 +218,7 @@ static conic_status open_scene(conic_source *source, const char *const *paths, s
   if (status == CONIC_OK)
     status = read_scene(source->context, paths[0], &g->gaussians, &g->is_lent);
   if (status == CONIC_OK)
-    status = place_scene(source->context, &place, &g->gaussians, &g->is_lent);
+    status = place_scene(source->context, &place, g->gaussians.frame, &g->gaussians, &g->is_lent);
   return status == CONIC_OK ? conic_gaussians_source_measure(g) : status;
 }
 

@@ -54,7 +54,7 @@ CASES = {
     "--transparency": [["--transparency"]],
     "--catcher": [["--catcher", "INPUT", "--shadow", "--samples", "1"]],
     "--holdout": [["--holdout", "INPUT", "--samples", "1"]],
-    "--place": [["--place", "INPUT=1,0,0,0,0,0,-1,0,0,1,0,0"]],
+    "--place": [["--place", "INPUT=0.8,0,0.6,0,0,1,0,0,-0.6,0,0.8,0"]],
     "--repeat": [["--repeat", "2", "--samples", "2"]],
     "--size": [["--size", "32x40"]],
     "--camera": [["--camera", "camera.json"], ["--camera", "top:0.1:32632"]],

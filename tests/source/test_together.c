@@ -198,10 +198,13 @@ static void check_scenes(conic_context *context) {
   conic_gaussians a = balls(context, 3, 1.5, 0.5, 0.5f), b = balls(context, 4, 1.75, 0.5, 0.5f),
                   all = balls(context, 7, 0.0, 0.0, 0.5f), moved = balls(context, 3, 1.5, 0.5, 0.5f);
   const conic_shot shot = shot_of(CONIC_PROFILE_GSPLAT_1_6);
+  memcpy(b.frame, "rub", 4); /* which is turned, y and z, into the first one's */
+  for (size_t i = 0; i < 4; i++)
+    b.position[2][i] *= -1.0f;
   for (size_t i = 0; i < 3; i++)
     moved.position[2][i] = a.position[2][i] - 0.25f;
   for (size_t i = 0; i < 7; i++)
-    all.position[2][i] = i < 3 ? a.position[2][i] : b.position[2][i - 3];
+    all.position[2][i] = i < 3 ? a.position[2][i] : -b.position[2][i - 3];
   conic_take_back_loans(context);
   CHECK_OK(conic_lend(context, names[0], &a));
   CHECK_OK(conic_lend(context, names[1], &b));
