@@ -10,8 +10,7 @@ typedef enum conic_planted_order {
   CONIC_ORDER_OWN = 0,
   CONIC_ORDER_Z = 1,
   CONIC_ORDER_DISTANCE = 2,
-  CONIC_ORDER_FILE = 3,
-  CONIC_N_PLANTED_ORDERS
+  CONIC_ORDER_FILE = 3
 } conic_planted_order;
 
 /* Where a Gaussian ends: 3 standard deviations from its centre. */
@@ -71,7 +70,6 @@ typedef struct conic_planted {
   float falloff_end; /* half of the q at which the falloff is 0; 0: it has no such end */
   int has_unit_volume;
   double least_z;    /* nearer means are left out */
-  float form_factor; /* of the form of q; 0: none */
   int changes_cross; /* its mixed term is multiplied by … */
   float cross_factor;
   unsigned harmonic_signs; /* bits of the harmonics whose sign is the other */

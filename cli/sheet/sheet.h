@@ -50,10 +50,9 @@ typedef struct cli_sheet_job {
   uint64_t memory_bytes; /* of a panel's pixels while they are drawn */
 
   conic_georeference reference;
-  const char *axis_names[3]; /* of the plan's right and up, and of heights */
-  double axis_signs[3];      /* by which a coordinate of the file is one along these */
-  double ppu, ppmm;          /* pixels of a world unit, and of a millimetre of paper */
-  int width, height;         /* of the sheet in pixels */
+  double axis_signs[2]; /* by which a coordinate of the file is one along the plan's right and up */
+  double ppu, ppmm;     /* pixels of a world unit, and of a millimetre of paper */
+  int width, height;    /* of the sheet in pixels */
   cli_strokes strokes;
   conic_render_statistics statistics; /* of the panels together */
   double draw_seconds, write_seconds;

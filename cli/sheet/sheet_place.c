@@ -29,17 +29,12 @@ static void find_axes(const cli_sheet_job *job, double azimuth_deg, double eleva
   clean_axes(axes);
 }
 
-/* The file's axis that a direction is along; null: it is along none. */
-static const char *name_axis(const cli_sheet_job *job, const double axis[3], double *sign) {
-  static const char *const letters[] = {"X", "Y", "Z"}, *const maps[] = {"E", "N", "H"};
-  int is_map = job->reference.keys != NULL;
-  *sign = 1.0;
+/* By which a coordinate of the file is a place along a direction: -1 against one of its axes, else 1. */
+static double sign_along(const double axis[3]) {
   for (int i = 0; i < 3; i++)
-    if (fabs(axis[i]) == 1.0) {
-      *sign = axis[i];
-      return is_map ? maps[i] : letters[i];
-    }
-  return NULL;
+    if (axis[i] == -1.0)
+      return -1.0;
+  return 1.0;
 }
 
 /* The scene's box along a direction. */
@@ -115,10 +110,8 @@ static conic_status place_panel(cli_sheet_job *job, cli_panel *panel, const doub
     panel->low[i] = span[0] - reach;
     panel->high[i] = span[1] + reach;
   }
-  name_axis(job, panel->axes[0], &panel->signs[0]);
-  name_axis(job, panel->axes[1], &panel->signs[1]);
-  if (panel->has_line)
-    panel->signs[0] = 1.0;
+  panel->signs[0] = panel->has_line ? 1.0 : sign_along(panel->axes[0]);
+  panel->signs[1] = sign_along(panel->axes[1]);
   if (panel->kind == CLI_PANEL_PLAN)
     snprintf(panel->caption, sizeof panel->caption, "Plan");
   else if (panel->has_line)
@@ -135,9 +128,7 @@ conic_status cli_sheet_place(cli_sheet_job *job) {
   conic_status status = CONIC_OK;
   find_axes(job, 0.0, 90.0, plan);
   for (int i = 0; i < 2; i++)
-    job->axis_names[i] = name_axis(job, plan[i], &job->axis_signs[i]);
-  const double up[3] = {-plan[2][0], -plan[2][1], -plan[2][2]};
-  job->axis_names[2] = name_axis(job, up, &job->axis_signs[2]);
+    job->axis_signs[i] = sign_along(plan[i]);
   for (int i = 0; i < job->n_panels && status == CONIC_OK; i++)
     status = place_panel(job, &job->panels[i], (const double(*)[3])plan, &n_lines);
   return status;

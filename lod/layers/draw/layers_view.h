@@ -32,11 +32,6 @@ typedef struct conic_layers_sight {
   conic_window pixels; /* those that it may cover */
 } conic_layers_sight;
 
-/* An error in space, on the screen. */
-static inline double conic_layers_px(const conic_layers_sight *sight, float error) {
-  return error > 0.0f ? sight->px_a_length * (double)error : 0.0;
-}
-
 /* 0 where nothing of the place can be in the picture. */
 int conic_layers_look(const conic_layers_view *view, const conic_layers_entry *entry, conic_layers_sight *sight);
 
