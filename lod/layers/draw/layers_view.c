@@ -119,7 +119,6 @@ int conic_layers_look(const conic_layers_view *view, const conic_layers_entry *e
   sight->distance = distance > radius ? distance - radius : 0.0;
   if (!(front > view->near_z)) {
     sight->error_px = entry->error > 0.0f ? HUGE_VAL : 0.0;
-    sight->px_a_length = HUGE_VAL;
     sight->near_iz = HUGE_VAL;
     sight->pixels.x_end = view->width;
     sight->pixels.y_end = view->height;
@@ -127,7 +126,6 @@ int conic_layers_look(const conic_layers_view *view, const conic_layers_entry *e
   }
   sight->near_iz = (1.0 + slack) / front;
   int is_in_sight = set_pixels(view, entry, p, radius, sight);
-  sight->px_a_length = view->greatest_focal * longest_ray(view, &sight->pixels) / front;
   sight->error_px = view->greatest_focal * (double)entry->error * longest_ray(view, &sight->pixels) / front;
   return is_in_sight;
 }

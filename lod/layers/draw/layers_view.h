@@ -26,7 +26,6 @@ void conic_layers_view_init(const conic_layers_header *header, const conic_camer
 /* What a picture shows of a place at most. */
 typedef struct conic_layers_sight {
   double error_px;     /* infinite where the place reaches the near plane */
-  double px_a_length;  /* an error of this length; likewise */
   double near_iz;      /* no inverse depth of its splats is greater; infinite likewise */
   double distance;     /* of its nearest point, at least, to the eye */
   conic_window pixels; /* those that it may cover */
