@@ -115,7 +115,7 @@ static void check_hostile(fixture *f, int first, double share_of_specials, doubl
 /* A few pictures of each method, small enough for a simulator (scripts/oclgrind). */
 static void check_small(fixture *f) {
   uint64_t state = 13;
-  fixture_camera(f, 20, 18, 16.0);
+  fixture_camera(f, 18, 17, 16.0);
   for (int number = 0; number < CONIC_N_METHODS; number++) {
     fill(f, &state, 1.5, 0.01);
     opencl_add_clips(f, &state);

@@ -114,7 +114,7 @@ static const int all_counts[] = {1, 2, 7, 0}, some_counts[] = {3, 0};
 static void test_surface(conic_context *context) {
   conic_splats splats;
   team_case c = {.splats = &splats, .options = small_clouds(), .failing = -1};
-  layers_scene(context, CONIC_SCENE_KNOT, 12000, 0.0, &splats);
+  layers_scene(context, CONIC_SCENE_KNOT, 6000, 0.0, &splats);
   check_case(context, &c, all_counts);
   c.options.memory_bytes = 1 << 16; /* nearly all goes to files, and parcels are small */
   check_case(context, &c, some_counts);
@@ -130,7 +130,7 @@ static void test_uneven(conic_context *context) {
   static const int three[] = {3, 0};
   conic_splats splats;
   team_case c = {.splats = &splats, .options = small_clouds(), .failing = -1, .weights = last_alone};
-  layers_scene(context, CONIC_SCENE_SPHERE, 6000, 1e6, &splats);
+  layers_scene(context, CONIC_SCENE_SPHERE, 3000, 1e6, &splats);
   check_case(context, &c, three);
   c.weights = few;
   check_case(context, &c, three);
@@ -143,10 +143,10 @@ static void test_uneven(conic_context *context) {
 static void test_bare_points(conic_context *context) {
   conic_splats splats;
   team_case c = {.options = small_clouds(), .failing = -1};
-  layers_scene(context, CONIC_SCENE_SPHERE, 12000, 0.0, &splats);
+  layers_scene(context, CONIC_SCENE_SPHERE, 6000, 0.0, &splats);
   conic_splats points = {.count = splats.count};
   memcpy(points.position, splats.position, sizeof points.position);
-  for (size_t i = 6000; i < 6700; i++)
+  for (size_t i = 3000; i < 3350; i++)
     for (int axis = 0; axis < 3; axis++)
       points.position[axis][i] = 0.5f;
   points.position[0][777] = 40.0f;
