@@ -220,7 +220,7 @@ static void test_same(void) {
     conic_splats splats;
     const char *path = files_path("same.lpc");
     options.memory_bytes = ways[i].memory_bytes;
-    layers_scene(context, CONIC_SCENE_KNOT, 60000, 0.0, &splats);
+    layers_scene(context, CONIC_SCENE_KNOT, 20000, 0.0, &splats);
     CHECK_OK(layers_build(context, &splats, path, &options, NULL));
     check_sound(context, path);
     unsigned char *bytes;
