@@ -22,7 +22,8 @@ typedef struct oracle_sum_bound {
 /* How far off floats may have what a pixel sees of a Gaussian. */
 typedef struct oracle_shown_off {
   double place[2], form[3], opacity, color[3], z, key;
-  double spread[2]; /* of the covariance's terms, in pixels; 0 where it is set up in double */
+  double compensation; /* of the square of what the opacity is multiplied by, as a share of it */
+  double spread[2];    /* of the covariance's terms, in pixels; 0 where it is set up in double */
 } oracle_shown_off;
 
 /* What the set-up in float is off by at most, in units of its terms' sizes; and how often roundings are tried. */

@@ -9,6 +9,8 @@ static const double n_setup_units = ORACLE_SETUP_UNITS, n_chain_units = 16.0;
 /* A sum of n terms in whatever order is off by √n units of the terms' sizes, 8 times at most: roundings are as good as
  * independent. */
 static const double n_sum_deviations = 8.0;
+/* Where the compensation's square is off by more, a difference of nearly equal numbers leaves nothing of it. */
+static const double most_compensation = 0.1;
 /* Of the deviation of samples, which are few. */
 static const double n_sample_deviations = 8.0;
 /* Two decisions at once may change more than each by itself, by as much as a Gaussian at its least hides. */
@@ -143,8 +145,9 @@ void conic_oracle_bound_numbers(const oracle_gradient_job *j, size_t i, size_t n
       continue;
     one[k] = 1.0;
     conic_oracle_gradient_chain(&j->view, &j->eye, j->set, i, NULL, NULL, one, &p, &camera);
+    const double more = k == BY_OPACITY ? j->judging->offs[i].compensation * fabs(j->totals[i][k]) : 0.0;
     for (size_t at = 0; at < n; at++) {
-      bound[at] += fabs(conic_oracle_number_of(&p, one, at)) * off;
+      bound[at] += fabs(conic_oracle_number_of(&p, one, at)) * (off + more);
       slack[at] += crossed * fabs(conic_oracle_number_of(&p, one, at)) * b->slack[k];
     }
   }
@@ -190,7 +193,8 @@ static conic_gaussian_class class_of_number(double found, double value, double b
 int conic_oracle_is_open(const oracle_gradient_job *j, size_t i) {
   const uint32_t followed =
       1u << CONIC_DOUBT_LEAST | 1u << CONIC_DOUBT_ORDER | 1u << CONIC_DOUBT_END | 1u << CONIC_DOUBT_MOST;
-  return j->judging->totals[i].is_open || j->gradient->doubt[i] & ~followed;
+  return j->judging->totals[i].is_open || j->judging->offs[i].compensation > most_compensation ||
+         j->gradient->doubt[i] & ~followed;
 }
 
 static void judge_gaussian(const gradient_judge_job *job, size_t i, judge_run *run) {
@@ -318,6 +322,8 @@ static void add_setup_in_float(const oracle_doubting *d, size_t i, const oracle_
   const double after = 1.0 / (placed.form[0] * placed.form[2] - placed.form[1] * placed.form[1]);
   if (least >= 0.0 && o > 0.0) { /* a share of the square root of a difference */
     const double share = fabs(g->opacity.v) / o, off = unit * x * x * y * y / after;
+    const double square = oracle_dot(s.rows[0], s.rows[0]) * oracle_dot(s.rows[1], s.rows[1]) / after;
+    to->compensation = share * share > least ? unit * square / (share * share) : share > 0.0 ? 0.0 : INFINITY;
     to->opacity += o * (share > 0.0 ? oracle_min(off / share, sqrt(off)) : sqrt(off));
   }
 }

@@ -78,7 +78,7 @@ def project(s, camera, t):
     a, b, d = cov[:, 0, 0] + t(0.3), cov[:, 0, 1], cov[:, 1, 1] + t(0.3)
     p["share"] = np.ones_like(a)
     if camera.get("aa"):
-        p["share"] = np.sqrt(np.maximum(0, (cov[:, 0, 0] * cov[:, 1, 1] - b * b) / (a * d - b * b)))
+        p["share"] = np.sqrt(np.maximum(t(2.5e-5), (cov[:, 0, 0] * cov[:, 1, 1] - b * b) / (a * d - b * b)))
     p["conic"] = np.stack([d, -b, a], 1) / (a * d - b * b)[:, None]
     p["place"] = np.stack([f * x / z + c, f * y / z + c], 1)
     eye = -(camera["view"][:3, :3].T @ camera["view"][:3, 3])
@@ -172,7 +172,7 @@ def differentiate(s, camera, weights, t=np.float32, fault="", order=None, raw=Fa
     X = p["conic"][:, [0, 1, 1, 2]].reshape(-1, 2, 2)
     V, J, f, z = -X @ V @ X, p["J"], p["f"], p["z"]
     if camera.get("aa") and fault != "compensation":
-        by_ratio = by["opacity"] * own * t(0.5) / np.maximum(share, t(1e-20))
+        by_ratio = np.where(share * share > t(2.51e-5), by["opacity"] * own * t(0.5) / share, 0)
         det = X[:, 0, 0] * X[:, 1, 1] - X[:, 0, 1] * X[:, 0, 1]
         V = V + by_ratio[:, None, None] * ((1 - share * share)[:, None, None] * X - (t(0.3) * det)[:, None, None] *
                                            np.eye(2, dtype=t))
