@@ -34,13 +34,13 @@ static int next_wrong_run(const gradients_job *job, int kind, size_t *at, size_t
 static void write_gradient_mistake(cli_json *json, const gradients_job *job, int kind) {
   const conic_gradient_mistake *m = &job->verdict.mistakes[kind];
   size_t last;
+  cli_json_object(json, NULL);
+  cli_json_text(json, "kind", conic_gradient_kind_name((conic_gradient_kind)kind));
   if (m->name) {
-    cli_json_object(json, "mistake");
     cli_json_text(json, "name", m->name);
     cli_json_bool(json, "named", m->is_named);
     cli_json_count(json, "righted", m->righted);
     cli_json_count(json, "spoilt", m->spoilt);
-    cli_json_close(json);
   }
   cli_json_array(json, "runs");
   for (size_t at = 0, n = 0; n < MOST_RUNS && next_wrong_run(job, kind, &at, &last); at = last + 1, n++) {
@@ -49,6 +49,7 @@ static void write_gradient_mistake(cli_json *json, const gradients_job *job, int
     cli_json_count(json, NULL, last);
     cli_json_close(json);
   }
+  cli_json_close(json);
   cli_json_close(json);
 }
 
@@ -104,10 +105,13 @@ static void write_gradient_verdict(cli_json *json, const void *cookie) {
     cli_json_count(json, "wrong", v->wrong[k]);
     cli_json_figures(json, NULL, {"greatest", v->greatest[k]}, {"max_abs", v->max_abs[k]},
                      {"share_of_bound", v->share_of_bound[k]});
-    if (v->wrong[k])
-      write_gradient_mistake(json, job, k);
     cli_json_close(json);
   }
+  cli_json_close(json);
+  cli_json_array(json, "mistakes");
+  for (int k = 0; k < CONIC_N_GRADIENT_KINDS; k++)
+    if (v->wrong[k])
+      write_gradient_mistake(json, job, k);
   cli_json_close(json);
   write_gradient_worst(json, v);
   cli_json_figures(json, "ms", {"judge", job->ms});

@@ -223,7 +223,7 @@ write gradient gradient gradient two.splat --profile gsplat-1.6 --size 40x40 --w
 run 0 gradient two.splat --profile gsplat-1.6 --size 40x40 --weights two.exr -o two-g.ply --quiet
 write judge-gradients judge_gradients judge two.splat --profile gsplat-1.6 --size 40x40 --weights two.exr \
   --gradients two-g.ply
-write judge-gradients-wrong judge_gradients judge two.splat --profile gsplat-1.6-aa --size 40x40 --weights two.exr \
+write judge-gradients-wrong judge_gradients judge two.splat --profile gsplat-1.6 --size 40x40 --weights two.exr --raw \
   --gradients two-g.ply
 write project project project two.splat --profile gsplat-1.6 --size 40x40 -o two.npz
 write judge-intermediates judge_intermediates judge two.splat --profile gsplat-1.6 --size 40x40 --intermediates two.npz

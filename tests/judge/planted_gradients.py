@@ -242,10 +242,8 @@ class Judge:
 def told_of(judged):
     """By kind that is wrong: the name, or what is nearest in brackets."""
     told = {}
-    for kind, about in judged["kinds"].items():
-        if about["wrong"]:
-            m = about.get("mistake")
-            told[kind] = "-" if not m else m["name"] if m["named"] else f"({m['name']})"
+    for m in judged["mistakes"]:
+        told[m["kind"]] = "-" if "name" not in m else m["name"] if m["named"] else f"({m['name']})"
     return told
 
 
@@ -256,10 +254,10 @@ def judge_others(judge, made):
     ids = np.sort(np.argsort(-abs(made["scale"]).sum(1))[:3])
     some["scale"][ids] *= 2
     judged = judge(some)
-    about = judged["kinds"]["scale"]
+    about = judged["mistakes"][0]
     found = [i for first, last in about["runs"] for i in range(first, last + 1)]
-    print(f"of Gaussians {ids.tolist()} alone: {found}, {about['mistake']}")
-    n_failed = int(found != ids.tolist() or about["mistake"]["named"] or about["mistake"]["name"] != "twice")
+    print(f"of Gaussians {ids.tolist()} alone: {found}, {about}")
+    n_failed = int(found != ids.tolist() or about["named"] or about["name"] != "twice")
     for what, factors in (("chance", r.uniform(0.8, 1.2, made["mean"].shape)), ("two", np.array((-2.0, -2.0, 1.0)))):
         told = told_of(judge(dict(made, mean=made["mean"] * factors)))
         print(f"means off by {what}: {told}")
