@@ -12,7 +12,7 @@ static const double n_sum_deviations = 8.0;
 /* Where the compensation's square is off by more, a difference of nearly equal numbers leaves nothing of it. */
 static const double most_compensation = 0.1;
 /* Of the deviation of samples, which are few. */
-static const double n_sample_deviations = 8.0;
+static const double n_sample_deviations = 12.0;
 /* Two decisions at once may change more than each by itself, by as much as a Gaussian at its least hides. */
 static const double crossed = 1.1;
 
