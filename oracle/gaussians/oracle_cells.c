@@ -170,8 +170,9 @@ static int may_reach(const oracle_uncertain *g, double x, double y) {
   return x >= g->reach[0][0] && x <= g->reach[1][0] && y >= g->reach[0][1] && y <= g->reach[1][1];
 }
 
-/* Those of a cell that may cover a place, in their order. */
-static size_t gather_meetings(const oracle_bound_request *b, cell_worker *w, size_t n, double x, double y) {
+/* Those of a cell that may cover a place, in their order. What the surface may hide takes no light. */
+static size_t gather_meetings(const oracle_bound_request *b, cell_worker *w, size_t n, double x, double y,
+                              const oracle_surface *surface) {
   const int is_sorted = b->doubting.view->rules->shape != CONIC_SHAPE_RAY;
   double T = 1.0, latest = -INFINITY;
   size_t n_meetings = 0;
@@ -190,7 +191,7 @@ static size_t gather_meetings(const oracle_bound_request *b, cell_worker *w, siz
       continue;
     n_meetings++;
     latest = oracle_max(latest, m->key_high);
-    if (!m->doubts)
+    if (!m->doubts && !(surface && m->z[1] >= surface->z))
       T *= 1.0 - m->alpha[0];
   }
   if (!is_sorted)
@@ -248,7 +249,7 @@ static void bound_one_pixel(const oracle_bound_request *b, cell_worker *w, size_
       conic_gaussian_bound sample;
       oracle_surface surface;
       int is_there = b->surfaces && conic_oracle_surface_at(b->surfaces, x + column, y + row, &surface);
-      size_t n_meetings = gather_meetings(b, w, n, x + column + 0.5, y + row + 0.5);
+      size_t n_meetings = gather_meetings(b, w, n, x + column + 0.5, y + row + 0.5, is_there ? &surface : NULL);
       conic_oracle_composite(&b->doubting, w->meetings, n_meetings, b->background, is_there ? &surface : NULL, w->steps,
                              &sample);
       if (b->note)

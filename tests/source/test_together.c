@@ -177,16 +177,26 @@ static void check_oracle(conic_context *context, conic_source *source, conic_gau
   conic_renderer_destroy(renderer);
 }
 
-/* A slope through a row of balls. */
-static void check_slope(conic_context *context, const char *const names[2]) {
-  conic_gaussians row = balls(context, 7, 1.2, 0.3, 0.6f);
-  conic_triangles set = wall(context, 2.0, 0.4, 0.5f);
+/* A slope through a row of balls; and leaning discs, one of which comes before a wall behind the centres of others
+ * whose part there is behind it. */
+static void check_profiles(conic_context *context, const char *const names[2], int are_leaning) {
+  conic_gaussians row = are_leaning ? balls(context, 9, 1.8, 0.0, 0.95f) : balls(context, 7, 1.2, 0.3, 0.6f);
+  conic_triangles set = wall(context, 2.0, are_leaning ? 0.0 : 0.4, 0.5f);
+  for (size_t i = 0; are_leaning && i < 8; i++) {
+    row.position[0][i] = -0.3f;
+    row.rotation[0][i] = 0.9063f;
+    row.rotation[2][i] = 0.4226f;
+    row.scale[0][i] = row.scale[1][i] = 1.0f;
+  }
+  if (are_leaning)
+    row.position[2][8] = 1.95f;
   conic_take_back_loans(context);
   CHECK_OK(conic_lend(context, names[0], &row));
   CHECK_OK(conic_lend(context, names[1], &set));
   conic_source *source = open_scene(context, names, 2, NULL);
   for (int profile = 0; profile < CONIC_N_GAUSSIAN_PROFILES; profile++)
-    check_oracle(context, source, (conic_gaussian_profile)profile, profile == CONIC_PROFILE_EXACT ? 2 : 1);
+    if (!are_leaning || profile == CONIC_PROFILE_2DGS_2024)
+      check_oracle(context, source, (conic_gaussian_profile)profile, profile == CONIC_PROFILE_EXACT ? 2 : 1);
   conic_source_close(source);
   conic_triangles_release(context, &set);
   conic_gaussians_release(context, &row);
@@ -294,7 +304,8 @@ int main(void) {
   conic_gaussians ball = balls(context, 1, 2.0, 0.0, 0.8f);
   CHECK_OK(conic_lend(context, names[0], &ball));
   check_walls(context, names);
-  check_slope(context, names);
+  check_profiles(context, names, 0);
+  check_profiles(context, names, 1);
   check_scenes(context);
   check_shadow(context, names);
   conic_context_destroy(context);
