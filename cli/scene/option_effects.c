@@ -31,6 +31,7 @@ static const struct {
     {F(COMPOSITED), F(MATTES) | F(EXPOSED), 0,
      "--aov cryptomatte and --exposure auto are of splats; give --profile surface, too"},
     {F(DEEP) | F(MIXED) | F(MASKED), 0, 0, "--deep has surfaces among Gaussians as they are without --ao and --shadow"},
+    {F(MIXED) | F(OPENCL), 0, 0, "--device opencl draws Gaussian scenes, or surfaces, not both together"},
     {F(DEEP) | F(COMPOSITED) | F(PROJECTED), 0, 0, "--deep is of perspective pictures"},
     {F(LEVELS) | F(ASKING), CLI_CHOSEN, 0,
      "of an .lpc it takes all; --error and --budget choose of one in conic render"},

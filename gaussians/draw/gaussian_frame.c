@@ -288,7 +288,9 @@ conic_status conic_gaussian_picture_draw(conic_gaussian_picture *f, const conic_
     f->steps->first[axis] = window->begin[axis];
   f->window = window;
   f->planes = planes;
-  conic_status status = composite_window(f);
+  conic_status status = planes->surface_z && f->options.device
+                            ? conic_fail(f->context, CONIC_ERROR_ARGUMENT, "gaussians: a device knows no surfaces")
+                            : composite_window(f);
   release_window(f);
   return status;
 }

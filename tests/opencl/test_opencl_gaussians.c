@@ -156,6 +156,9 @@ static void check_cameras(const desk *d) {
   camera.kind = CONIC_CAMERA_ORTHOGRAPHIC;
   camera.fx = camera.fy = 10.0;
   compare_ways(d, &scene, &camera, CONIC_PROFILE_EXACT, N_WAYS, "orthographic");
+  p.surface_z = p.z;
+  options.prefilter = 0.0;
+  CHECK(conic_gaussians_render(d->context, &scene, &camera, &options, &p, NULL) == CONIC_ERROR_ARGUMENT);
   picture_release(&p);
   conic_gaussians_release(d->context, &scene);
 }
