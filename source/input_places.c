@@ -118,6 +118,9 @@ conic_status conic_places_part(conic_context *context, const char *text, const i
     text = next;
   }
   kept[used] = '\0';
-  *part = kept;
+  if (used > 0)
+    *part = kept;
+  else
+    conic_memory_release(context, kept);
   return CONIC_OK;
 }

@@ -94,8 +94,12 @@ conic_status conic_source_open(conic_context *context, const char *const *paths,
   if ((options && !conic_options_take(&own, options)) || n_paths == 0)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "source: no input, or the options were not initialised");
   const conic_source_kind *kind = conic_source_kind_find(paths, n_paths, &own);
-  if (kind->company == CONIC_SOURCE_ALONE && n_paths != 1)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: a hybrid is drawn by itself", paths[0]);
+  if (kind->company == CONIC_SOURCE_ALONE && n_paths != 1) {
+    size_t i = 0;
+    while (i < n_paths - 1 && conic_source_kind_find(&paths[i], 1, &own) != kind)
+      i++;
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: a hybrid is drawn without other surfaces", paths[i]);
+  }
   if (conic_coloring_is_asked(&own) &&
       (kind == &conic_source_kind_octree ||
        (kind == &conic_source_kind_layers &&

@@ -68,6 +68,13 @@ for bad in what:o.png overdraw overdraw: boxes@:b.png boxes@128:b.png boxes@x:b.
   run_as_typed 2 render pairs/octree.cot -o p.pfm --show "$bad"
 done
 
+# Gaussians among surfaces: a place is of the scene alone, and what cannot be together is named.
+run_as_typed 0 render pairs/gaussians.spz pairs/hybrid.chy -o p.pfm --size 20x20 --place gaussians.spz=0,0,1
+run_as_typed 2 render pairs/gaussians.spz pairs/splats.ply pairs/hybrid.chy -o p.pfm
+grep -q 'hybrid.chy: a hybrid is drawn without other surfaces' err || fail "$(cat err)"
+run_as_typed 2 render pairs/gaussians.spz pairs/mesh.obj -o p.pfm --device opencl
+grep -q 'not both together' err || fail "$(cat err)"
+
 # The other commands that draw use the same table.
 run 0 render pairs/splats.ply --size 20x20 -o theirs.exr --aov rgba,Z
 for command in "judge --picture theirs.exr" verify "explain --pixel 3,3"; do
