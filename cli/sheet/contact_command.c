@@ -274,7 +274,8 @@ static int run_contact(cli_session *session, int argc, char **argv) {
   if (exit_code == CLI_DONE && n_inputs == 0)
     exit_code = cli_usage("contact: no files; see conic help contact");
   if (exit_code == CLI_DONE && (!job.output || !conic_file_has_ending(job.output, "png")))
-    exit_code = cli_usage("contact: no output; give one with -o SHEET.png");
+    exit_code = job.output ? cli_usage("contact: %s: a contact sheet is a .png", job.output)
+                           : cli_usage("contact: no output; give one with -o SHEET.png");
   if (exit_code == CLI_DONE)
     exit_code = cli_check_outputs(session, &job.output, 1);
   if (exit_code == CLI_DONE)

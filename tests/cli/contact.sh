@@ -29,6 +29,8 @@ for options in "" "scans" "scans -o x.jpg" "scans/a.png -o scans/a.png"; do
   # shellcheck disable=SC2086 # several words
   run 2 contact $options
 done
+run 2 contact scans -o x.jpg
+grep -q 'contact: x.jpg: a contact sheet is a .png' err || fail "$(cat err)"
 run 3 contact empty -o y.png
 [[ ! -e y.png ]] || fail "a sheet that was refused is there"
 [[ $failures -eq 0 ]]

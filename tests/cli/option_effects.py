@@ -73,7 +73,6 @@ CASES = {
     "--crease": [["--crease", "0"], ["--crease", "90"], ["--crease", "all"]],
     "--color-by": [["--color-by", word] for word in ("height", "intensity", "nonsense", "normal")],
     "--ramp": [["--ramp", "heat"], ["--ramp", "0,1"], ["--ramp", "grey:0,1"]],
-    "--place": [["--place", name + "=0.1,0,0.2"] for name in ("gaussians.spz", "splats.ply", "mesh.obj")],
     "--where": [["--where", "x > 0.2"], ["--where", "intensity > 20"]],
     "--error": [["--error", "20"], ["--error", "8:50"], ["--error", "0:50"]],
     "--budget": [["--budget", "50"]],
