@@ -350,8 +350,10 @@ static int run(cli_session *session, int argc, char **argv) {
         job.top.is_wanted ? cli_top_check_formats(session->context, &job) : check_formats(session, &job);
     if (status == CONIC_OK)
       status = cli_scene_begin(session, &job);
-    if (status == CONIC_OK &&
-        (cli_render_views_check(session, &job) != CLI_DONE || cli_units_choose(session, &job) != CLI_DONE))
+    const int checked = status == CONIC_OK ? cli_render_views_check(session, &job) : CLI_DONE;
+    if (checked != CLI_DONE)
+      status = checked == CLI_RESOURCE ? CONIC_ERROR_IO : CONIC_ERROR_ARGUMENT;
+    if (status == CONIC_OK && cli_units_choose(session, &job) != CLI_DONE)
       status = CONIC_ERROR_ARGUMENT;
     conic_moment begun = conic_moment_now();
     job.begun_seconds = begun.clock_s;

@@ -104,6 +104,7 @@ cmp third.pfm out.d/p.0003.pfm || fail "--frames changes a frame of a path"
 holds p.0001.pfm p.0003.pfm p.pfm.1-4-2.frames
 turn 2 --path keys.json --turntable 2 -o out.d/p.pfm
 turn 2 --path keys.json --camera camera.json -o out.d/p.pfm
+turn 4 --path keys.json -o absent.d/p.pfm
 printf '{"keys": [{"time": 0}]}' > short.json
 turn 3 --path short.json -o out.d/p.pfm
 
