@@ -74,6 +74,7 @@ run_as_typed 2 render pairs/gaussians.spz pairs/splats.ply pairs/hybrid.chy -o p
 grep -q 'hybrid.chy: a hybrid is drawn without other surfaces' err || fail "$(cat err)"
 run_as_typed 2 render pairs/gaussians.spz pairs/mesh.obj -o p.pfm --device opencl
 grep -q 'not both together' err || fail "$(cat err)"
+run_as_typed 2 render pairs/gaussians.spz pairs/mesh.obj -o p.exr --aov ao
 
 # The other commands that draw use the same table.
 run 0 render pairs/splats.ply --size 20x20 -o theirs.exr --aov rgba,Z
