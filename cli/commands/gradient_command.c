@@ -3,6 +3,7 @@
 #include "cli/command.h"
 #include "cli/commands/gaussian_commands.h"
 #include "cli/outputs.h"
+#include "core/files/disk.h"
 
 typedef struct gradient_job {
   cli_render_job scene;
@@ -140,7 +141,7 @@ static int check_gradient(cli_session *session, const gradient_job *job) {
     return cli_usage("gradient: no weights given (--weights W.exr)");
   if (!job->output && !session->json_path)
     return cli_usage("gradient: nothing to write; give -o G.ply or --json FILE");
-  if (!cli_is_composited(scene))
+  if (!cli_is_composited(scene) && conic_disk_can_read(scene->inputs[0])) /* else opening it says more */
     return cli_usage("gradient: it is of Gaussian scenes by a profile; surfels have none yet");
   if (!conic_gradient_has_profile(scene->shot.gaussians.profile))
     return cli_usage("gradient: the profile %s has none yet",

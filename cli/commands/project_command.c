@@ -3,6 +3,7 @@
 #include "cli/command.h"
 #include "cli/commands/gaussian_commands.h"
 #include "cli/outputs.h"
+#include "core/files/disk.h"
 
 typedef struct project_job {
   cli_render_job scene;
@@ -68,7 +69,7 @@ static int check_project(cli_session *session, const project_job *job) {
   const char *dot = job->output ? strrchr(job->output, '.') : ".npz";
   if (!dot || (strcmp(dot, ".npz") != 0 && strcmp(dot, ".csv") != 0))
     return cli_usage("project: %s: its name ends in neither .npz nor .csv", job->output);
-  if (!cli_is_composited(scene))
+  if (!cli_is_composited(scene) && conic_disk_can_read(scene->inputs[0])) /* else opening it says more */
     return cli_usage("project: it is of Gaussian scenes by a profile; conic explain --dump-projection is of splats");
   if (scene->shot.gaussians.prefilter != 0.0 || scene->shot.view.samples > 1)
     return cli_usage("project: it is of one sample a pixel, without a prefilter");
