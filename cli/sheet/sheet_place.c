@@ -4,12 +4,12 @@
 #include "core/image/framing.h"
 
 /* What rounding leaves of a zero would shift coordinates of maps. */
-static void clean_axes(double axes[3][3]) {
-  for (int i = 0; i < 9; i++)
-    if (fabs(axes[i / 3][i % 3]) < 1e-14)
-      axes[i / 3][i % 3] = 0.0;
-    else if (fabs(fabs(axes[i / 3][i % 3]) - 1.0) < 1e-14)
-      axes[i / 3][i % 3] = axes[i / 3][i % 3] > 0.0 ? 1.0 : -1.0;
+static void clean_axis(double axis[3]) {
+  for (int i = 0; i < 3; i++)
+    if (fabs(axis[i]) < 1e-14)
+      axis[i] = 0.0;
+    else if (fabs(fabs(axis[i]) - 1.0) < 1e-14)
+      axis[i] = axis[i] > 0.0 ? 1.0 : -1.0;
 }
 
 /* Right, up and away of a viewer at an azimuth, level with the scene or above it. */
@@ -26,7 +26,8 @@ static void find_axes(const cli_sheet_job *job, double azimuth_deg, double eleva
     axes[1][i] = -rows[1][i];
     axes[2][i] = rows[2][i];
   }
-  clean_axes(axes);
+  for (int i = 0; i < 3; i++)
+    clean_axis(axes[i]);
 }
 
 /* By which a coordinate of the file is a place along a direction: -1 against one of its axes, else 1. */
@@ -61,7 +62,8 @@ static conic_status face_line(cli_sheet_job *job, cli_panel *panel, const double
     down[i] = plan[2][i];
   }
   conic_cross(panel->axes[0], down, panel->axes[2]);
-  clean_axes(panel->axes);
+  for (int i = 0; i < 3; i++)
+    clean_axis(panel->axes[i]);
   panel->from_line = panel->low[0] = conic_dot(at, panel->axes[0]);
   panel->high[0] = panel->low[0] + length;
   panel->near_away = conic_dot(at, panel->axes[2]);
