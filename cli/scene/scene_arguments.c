@@ -152,7 +152,8 @@ static int parse_all(cli_session *session, const cli_option *own, int n_own, con
   const char *values[n_own + n_scene];
   int answer = CLI_RESOURCE;
   if (table && job->inputs) {
-    memcpy(table, own, (size_t)n_own * sizeof *table);
+    if (n_own > 0)
+      memcpy(table, own, (size_t)n_own * sizeof *table);
     for (int i = 0; i < n_own; i++) /* what is a command's own is what it is for */
       table[i].is_usual |= !job->is_for_looking || job->left_out;
     int n = n_own;

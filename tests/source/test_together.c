@@ -308,6 +308,7 @@ int main(void) {
   check_profiles(context, names, 1);
   check_scenes(context);
   check_shadow(context, names);
+  conic_gaussians_release(context, &ball);
   conic_context_destroy(context);
   return check_result();
 }
