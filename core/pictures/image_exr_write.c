@@ -27,6 +27,7 @@ typedef struct exr_chunk {
   conic_deflater deflater; /* … and what packs, */
   unsigned char *packed;   /* with room for the pixels, twice */
   size_t packed_room;
+  int is_told; /* that there is no memory for it */
 } exr_chunk;
 
 struct conic_exr_bands {
@@ -146,6 +147,7 @@ static exr_result_t pack_zip(exr_encode_pipeline_t *pipeline) {
     chunk->packed = conic_memory_allocate(chunk->context, 2 * n, 1);
     chunk->packed_room = chunk->packed ? 2 * n : 0;
   }
+  chunk->is_told = !chunk->packed;
   if (!chunk->packed)
     return EXR_ERR_OUT_OF_MEMORY;
   unsigned char *smaller = chunk->packed + n;
@@ -222,6 +224,7 @@ conic_status conic_exr_pack(conic_exr_bands *bands, const conic_image *image, in
       result = result == EXR_ERR_SUCCESS ? chunk->result : result;
       status = result == EXR_ERR_SUCCESS ? receive(cookie, chunk->info.start_y, chunk->info.height,
                                                    chunk->pipeline.compressed_buffer, chunk->pipeline.compressed_bytes)
+               : chunk->is_told          ? CONIC_ERROR_MEMORY
                                          : conic_exr_fail(&bands->stream, result, "write", CONIC_ERROR_ARGUMENT);
     }
     if (status != CONIC_OK)
