@@ -6,6 +6,17 @@
 /* The source of the surfaces that are drawn among a source's Gaussians, which stays its own; null: there are none. */
 conic_source *conic_source_surfaces(const conic_source *source);
 
+/* How surfaces are drawn for a picture of both: without a background, a pixel each of its samples. */
+typedef struct conic_surfaces_look {
+  conic_camera camera;
+  conic_render_options render;
+  conic_source_view view;
+  unsigned planes; /* that a picture with the given ones needs of them */
+} conic_surfaces_look;
+
+conic_surfaces_look conic_surfaces_look_of(const conic_camera *camera, const conic_render_options *render,
+                                           const conic_source_view *view, unsigned planes);
+
 /* Draws the surfaces, without a background, one sample a pixel, into all planes that the image has: those that it needs
  * by itself are bits of `planes`. */
 typedef struct conic_surfaces_drawer {

@@ -326,26 +326,29 @@ static conic_status composite_whole(conic_source *source, conic_renderer *render
   return status;
 }
 
+conic_surfaces_look conic_surfaces_look_of(const conic_camera *camera, const conic_render_options *render,
+                                           const conic_source_view *view, unsigned planes) {
+  const unsigned ids = 1u << CONIC_PLANE_ID | 1u << CONIC_PLANE_LAST;
+  conic_surfaces_look look = {conic_samples_camera(camera, view->samples, 0, camera->height), *render, *view,
+                              1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | (planes & 1u << CONIC_PLANE_NORMAL) |
+                                  (planes & ids ? 1u << CONIC_PLANE_ID : 0)};
+  look.render.has_background = 0;
+  look.view.samples = 1;
+  return look;
+}
+
 conic_status conic_source_draw_among(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
                                      const conic_render_options *render, const conic_source_view *view,
                                      const conic_surfaces_drawer *drawer, conic_image *image,
                                      conic_render_statistics *statistics) {
-  const unsigned ids = 1u << CONIC_PLANE_ID | 1u << CONIC_PLANE_LAST, planes = conic_image_planes(image);
-  conic_camera fine = conic_samples_camera(camera, view->samples, 0, camera->height);
-  conic_render_options bare = *render;
-  conic_source_view single = *view;
+  const conic_surfaces_look look = conic_surfaces_look_of(camera, render, view, conic_image_planes(image));
   conic_render_statistics of_surfaces;
   conic_image surfaces;
-  bare.has_background = 0;
-  single.samples = 1;
   memset(&of_surfaces, 0, sizeof of_surfaces);
-  conic_status status =
-      conic_image_allocate(source->context, fine.width, fine.height,
-                           1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | drawer->planes |
-                               (planes & 1u << CONIC_PLANE_NORMAL) | (planes & ids ? 1u << CONIC_PLANE_ID : 0),
-                           &surfaces);
+  conic_status status = conic_image_allocate(source->context, look.camera.width, look.camera.height,
+                                             look.planes | drawer->planes, &surfaces);
   if (status == CONIC_OK)
-    status = drawer->draw(drawer->cookie, &fine, &bare, &single, &surfaces, &of_surfaces);
+    status = drawer->draw(drawer->cookie, &look.camera, &look.render, &look.view, &surfaces, &of_surfaces);
   if (status == CONIC_OK)
     status = composite_whole(source, renderer, camera, render, view->samples, &surfaces, image, statistics);
   const uint64_t n_covered = statistics->pixels_covered;

@@ -68,19 +68,10 @@ static conic_status place_scene(conic_context *context, const conic_place *place
   const conic_gaussians given = *set;
   if (!place->is_moved && strcmp(given.frame, frame) == 0)
     return CONIC_OK;
-  if (*is_lent) {
-    conic_status status =
-        conic_gaussians_allocate(context, given.count, given.sh_degree, conic_gaussians_fields(&given), set);
-    if (status != CONIC_OK)
-      return status;
-    *is_lent = 0;
-    conic_gaussians_put(&given, set, 0);
-    memcpy(set->origin, given.origin, sizeof set->origin);
-    memcpy(set->frame, given.frame, sizeof set->frame);
-    memcpy(set->up, given.up, sizeof set->up);
-    set->is_linear = given.is_linear;
-  }
-  conic_status status = conic_gaussians_turn(context, set, frame);
+  conic_status status = *is_lent ? join_scenes(context, &given, 1, set) : CONIC_OK;
+  *is_lent = 0;
+  if (status == CONIC_OK)
+    status = conic_gaussians_turn(context, set, frame);
   if (status != CONIC_OK || !place->is_moved)
     return status;
   double up[3];
@@ -222,17 +213,28 @@ static conic_status open_scene(conic_source *source, const char *const *paths, s
   return status == CONIC_OK ? conic_gaussians_source_measure(g) : status;
 }
 
-#define KIND_OF_GAUSSIANS(its_abilities, its_company, its_open, its_input_of)                                          \
+/* Neither would know of the other's way. */
+static conic_status refuse_to_move(conic_source *source, const conic_source_pose *poses, size_t n_poses) {
+  (void)n_poses;
+  return !poses
+             ? CONIC_OK
+             : conic_fail(source->context, CONIC_ERROR_UNSUPPORTED,
+                          "%s: Gaussian scenes and surfaces among them rest; --place says where, and each moves alone",
+                          source->name);
+}
+
+#define KIND_OF_GAUSSIANS(its_abilities, its_company, its_open, its_input_of, its_move)                                \
   {                                                                                                                    \
     .size = sizeof(conic_gaussians_source), .abilities = (its_abilities), .company = (its_company),                    \
     .takes = conic_gaussians_source_takes, .open = (its_open), .close = conic_gaussians_source_close,                  \
     .draw = conic_gaussians_source_draw, .windowing = &conic_gaussians_windowing, .input_of = (its_input_of),          \
-    .tell_rest = conic_gaussians_source_tell                                                                           \
+    .move = (its_move), .tell_rest = conic_gaussians_source_tell                                                       \
   }
 
 const conic_source_kind conic_source_kind_gaussians =
-                            KIND_OF_GAUSSIANS(CONIC_SOURCE_COMPOSITES, CONIC_SOURCE_SINGLE, open_scene, NULL),
-                        conic_source_kind_scenes =
-                            KIND_OF_GAUSSIANS(CONIC_SOURCE_COMPOSITES, CONIC_SOURCE_ALIKE, open_together, find_input),
-                        conic_source_kind_together = KIND_OF_GAUSSIANS(CONIC_SOURCE_COMPOSITES | CONIC_SOURCE_MIXES,
-                                                                       CONIC_SOURCE_MANY, open_together, find_input);
+                            KIND_OF_GAUSSIANS(CONIC_SOURCE_COMPOSITES, CONIC_SOURCE_SINGLE, open_scene, NULL, NULL),
+                        conic_source_kind_scenes = KIND_OF_GAUSSIANS(CONIC_SOURCE_COMPOSITES, CONIC_SOURCE_ALIKE,
+                                                                     open_together, find_input, NULL),
+                        conic_source_kind_together =
+                            KIND_OF_GAUSSIANS(CONIC_SOURCE_COMPOSITES | CONIC_SOURCE_MIXES, CONIC_SOURCE_MANY,
+                                              open_together, find_input, refuse_to_move);

@@ -242,7 +242,8 @@ def make_sources():
         "world_to_camera": [[1, 0, 0, 0], [0, -1, 0, 0.2], [0, 0, -1, 3], [0, 0, 0, 1]]}))
     pathlib.Path("keys.json").write_text(json.dumps({"keys": [
         {"time": 0, "place": [0, 1, 3], "target": [0, 0, 0]}, {"time": 1, "place": [3, 1, 0]}]}))
-    pathlib.Path("motion.json").write_text(json.dumps({"frames": {"0": [[[1, 0, 0, 0.4], [0, 1, 0, 0], [0, 0, 1, 0]]]}}))
+    pathlib.Path("motion.json").write_text(json.dumps([
+        {"input": 0, "frame": 0, "matrix": [[1, 0, 0, 0.4], [0, 1, 0, 0], [0, 0, 1, 0]]}]))
     return {"splats": "splats.ply", "raw": "raw.las", "mesh": "mesh.obj", "textured": "textured.obj",
             "octree": "octree.cot", "levels": "levels.lpc", "hybrid": "hybrid.chy", "gaussians": "gaussians.spz"}
 

@@ -278,6 +278,12 @@ static void check_shadow(conic_context *context, const char *const names[2]) {
                         conic_srgb_decode((double)pixel_of(&plain, MIDDLE + k)[0]);
     CHECK_NEAR(part, 1.0 - 0.8 * exp(-0.5 * q), 0.006);
   }
+  conic_source_pose poses[2];
+  conic_source_pose_init(&poses[0]);
+  conic_source_pose_init(&poses[1]);
+  poses[1].world_from_rest[0][3] = 1.0;
+  CHECK(conic_source_move(source, poses, 2) == CONIC_ERROR_UNSUPPORTED &&
+        conic_source_move(source, NULL, 0) == CONIC_OK);
   shot.catchers = 2; /* the wall, of which the shadow is left */
   shot.planes = 1u << CONIC_PLANE_RGBA;
   conic_image caught = draw(context, source, &shot);
