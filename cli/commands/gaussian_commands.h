@@ -18,6 +18,11 @@ int cli_is_composited(const cli_render_job *scene);
 /* The profile and the background that the scene is drawn with. */
 conic_gaussian_options cli_gaussian_options(const cli_render_job *scene);
 
+/* Opens the scene and takes its first camera, for what asks about a profile's floats: fills in the options that it is
+ * drawn with, and the model of `floats`, a conic_float_kind. */
+conic_status cli_gaussians_begin(cli_session *session, cli_render_job *scene, int floats,
+                                 conic_gaussian_options *options, conic_float_model *model);
+
 /* Judges the image, or, if it is empty, the picture that conic draws. Returns the exit code. */
 int cli_verify_composited(cli_session *session, cli_render_job *scene, size_t n_pixels, const char *image_path,
                           conic_image *image);

@@ -32,14 +32,9 @@ static void report_project(cli_json *json, const void *cookie) {
 }
 
 static conic_status project_scene(cli_session *session, project_job *job) {
-  const conic_gaussian_options options = cli_gaussian_options(&job->scene);
+  conic_gaussian_options options;
   conic_float_model model;
-  conic_float_model_init(&model, (conic_float_kind)job->floats);
-  conic_status status = cli_scene_begin(session, &job->scene);
-  if (status == CONIC_OK)
-    status = cli_scene_open(session, &job->scene);
-  if (status == CONIC_OK)
-    status = cli_scene_camera(session, &job->scene, 0);
+  conic_status status = cli_gaussians_begin(session, &job->scene, job->floats, &options, &model);
   const double start = cli_seconds();
   if (status == CONIC_OK)
     status = conic_gaussian_intermediates_find(session->context, conic_source_gaussians(job->scene.source),

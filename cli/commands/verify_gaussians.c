@@ -27,6 +27,16 @@ conic_gaussian_options cli_gaussian_options(const cli_render_job *scene) {
   return options;
 }
 
+conic_status cli_gaussians_begin(cli_session *session, cli_render_job *scene, int floats,
+                                 conic_gaussian_options *options, conic_float_model *model) {
+  *options = cli_gaussian_options(scene);
+  conic_float_model_init(model, (conic_float_kind)floats);
+  conic_status status = cli_scene_begin(session, scene);
+  if (status == CONIC_OK)
+    status = cli_scene_open(session, scene);
+  return status == CONIC_OK ? cli_scene_camera(session, scene, 0) : status;
+}
+
 static const char *profile_of(const cli_render_job *scene) {
   return conic_gaussian_profile_name(scene->shot.gaussians.profile);
 }

@@ -79,14 +79,9 @@ static void print_intermediates(const intermediates_job *job) {
 }
 
 static conic_status judge_arrays(cli_session *session, intermediates_job *job) {
-  const conic_gaussian_options options = cli_gaussian_options(&job->scene);
+  conic_gaussian_options options;
   conic_float_model model;
-  conic_float_model_init(&model, (conic_float_kind)job->floats);
-  conic_status status = cli_scene_begin(session, &job->scene);
-  if (status == CONIC_OK)
-    status = cli_scene_open(session, &job->scene);
-  if (status == CONIC_OK)
-    status = cli_scene_camera(session, &job->scene, 0);
+  conic_status status = cli_gaussians_begin(session, &job->scene, job->floats, &options, &model);
   const double start = cli_seconds();
   if (status == CONIC_OK)
     status = conic_gaussian_intermediates_judge(session->context, conic_source_gaussians(job->scene.source),

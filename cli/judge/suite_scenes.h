@@ -77,3 +77,9 @@ static inline int cli_suite_judged_at(int i, int step) {
 }
 
 void cli_suite_camera(const suite_scene *scene, conic_camera *camera);
+
+/* Scenes of surface splats: one; a sheet; two that meet; a floor, nearly from its edge. Errors: MEMORY. */
+conic_status cli_suite_make_splat(conic_context *context, conic_splats *splats);
+conic_status cli_suite_make_sheet(conic_context *context, conic_splats *splats);
+conic_status cli_suite_make_corner(conic_context *context, conic_splats *splats);
+conic_status cli_suite_make_steep(conic_context *context, conic_splats *splats);

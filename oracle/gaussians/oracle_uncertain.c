@@ -6,14 +6,11 @@
  * sum of its terms' absolute values. */
 #include <float.h>
 
-#include "oracle/gaussians/oracle_uncertain.h"
+#include "oracle/gaussians/oracle_coverage.h"
 
 /* The roundings of any term of the covariance are some 44: quaternions 12, rotations 6, scales 2, view and Jacobian 12,
  * sums 12. A step of the set-up counts as four of them. */
 static const double n_covariance_roundings = 11.0;
-
-/* The reach may be larger than the formula says, by so many pixels. */
-static const double reach_margin_px = 1.0;
 
 /* What set-up has of a Gaussian in camera space. */
 typedef struct bounded_frame {
@@ -123,76 +120,6 @@ static void bound_offset(const oracle_doubting *d, double unit, oracle_uncertain
     g->offset[axis] = (bounded){g->pixel[axis] - g->place[axis].v, g->place[axis].off};
     double rounded = d->model->is_setup_in_float ? fabs(g->place[axis].v) + fabs(g->pixel[axis]) : 0.0;
     g->offset[axis].off += unit * rounded + ORACLE_FLOAT_UNIT * oracle_max(fabs(g->offset[axis].v), 1.0);
-  }
-}
-
-/* Pixels from tile `first` to before tile `behind`, of 16 pixels, with the least and greatest that each may be. */
-static void admit_tiles(const oracle_doubting *d, int axis, const double first[2], const double behind[2],
-                        oracle_uncertain *g) {
-  const double size = axis ? d->view->camera->height : d->view->camera->width, most = ceil(size / 16.0);
-  double tiles[4] = {first[0], first[1], behind[0], behind[1]};
-  for (int k = 0; k < 4; k++)
-    tiles[k] = 16.0 * oracle_min(oracle_max(floor(tiles[k] / 16.0), 0.0), most);
-  g->wide[0][axis] = tiles[0];
-  g->sure[0][axis] = tiles[1];
-  g->sure[1][axis] = tiles[2];
-  g->wide[1][axis] = tiles[3];
-}
-
-static void admit_square(const oracle_doubting *d, bounded radius, oracle_uncertain *g) {
-  double least = ceil(bounded_low(radius)), most = ceil(bounded_high(radius));
-  for (int axis = 0; axis < 2; axis++) {
-    double low = bounded_low(g->place[axis]) - 0.5, high = bounded_high(g->place[axis]) - 0.5;
-    double ulp = d->model->is_setup_in_float ? 2e-7 * (fabs(low) + most + 16.0) : 1e-13 * (fabs(low) + most);
-    const double first[2] = {low - most - ulp, high - least + ulp};
-    const double behind[2] = {low + least + 15.0 - ulp, high + most + 15.0 + ulp};
-    admit_tiles(d, axis, first, behind, g);
-  }
-}
-
-static void admit_box(const oracle_doubting *d, const bounded radius[2], oracle_uncertain *g) {
-  for (int axis = 0; axis < 2; axis++) {
-    double least = ceil(bounded_low(radius[axis])), most = ceil(bounded_high(radius[axis]));
-    double low = bounded_low(g->place[axis]), high = bounded_high(g->place[axis]);
-    double ulp = d->model->is_setup_in_float ? 2e-7 * (fabs(low) + most + 16.0) : 2e-9;
-    const double first[2] = {low - most - ulp, high - least + ulp};
-    const double behind[2] = {low + least + 16.0 - ulp, high + most + 16.0 + ulp};
-    admit_tiles(d, axis, first, behind, g);
-    double size = axis ? d->view->camera->height : d->view->camera->width; /* beside the picture, it is culled */
-    if (high + most + ulp <= 0.0 || low - most - ulp >= size)
-      g->wide[1][axis] = -INFINITY;
-    if (low + least - ulp <= 0.0 || high - least + ulp >= size)
-      g->sure[1][axis] = -INFINITY;
-  }
-}
-
-/* q beyond which α is below its least, amply. Below 0: everywhere. */
-static double reach_in_q(const oracle_doubting *d, bounded opacity) {
-  double most = bounded_high(opacity);
-  if (d->limits.half_cutoff > 0.0)
-    return 2.0 * d->limits.half_cutoff + 0.01;
-  if (!oracle_is_finite(most)) /* no file has it */
-    most = 1e30;
-  return most * 1.001 >= d->limits.alpha_least ? 2.0 * conic_oracle_log(most * 1.001 / d->limits.alpha_least) + 0.01
-                                               : -1.0;
-}
-
-static void reach_everywhere(oracle_uncertain *g) {
-  for (int axis = 0; axis < 2; axis++) {
-    g->reach[0][axis] = -INFINITY;
-    g->reach[1][axis] = INFINITY;
-  }
-}
-
-/* Of a form that may be anything, q may be, too, however far away. But every program looks at a box alone, or at the
- * tiles of 16 pixels that it meets, and the variances are known. */
-static void reach_of_ellipse(const bounded variance[2], double q, oracle_uncertain *g) {
-  const int is_known = bounded_is_finite(g->form[0]) && bounded_is_finite(g->form[1]) && bounded_is_finite(g->form[2]);
-  for (int axis = 0; axis < 2; axis++) {
-    double half = sqrt(q * bounded_high(variance[axis])) + reach_margin_px;
-    half += half * 1e-3 + g->place[axis].off + (is_known ? 0.0 : 16.0);
-    g->reach[0][axis] = g->place[axis].v - half;
-    g->reach[1][axis] = g->place[axis].v + half;
   }
 }
 
@@ -368,7 +295,7 @@ static int bound_ellipse(const oracle_doubting *d, const bounded_frame *f, oracl
     apart.v = oracle_max(apart.v, 0.1);
     bounded root = bounded_root(bounded_add(mean, bounded_root(apart, unit), unit), unit);
     g->radius[0] = g->radius[1] = bounded_scale(3.0, root, unit);
-    admit_square(d, g->radius[0], g);
+    conic_oracle_admit_square(d, g->radius[0], g);
   } else if (conic_oracle_has_radii(rules)) {
     const bounded extent = extent_in_deviations(d, g->opacity);
     for (int axis = 0; axis < 2; axis++)
@@ -386,8 +313,8 @@ static int bound_ellipse(const oracle_doubting *d, const bounded_frame *f, oracl
   g->may_lack_inverse = !(bounded_low(wide) > 0.0);
   const double grown = rules->spread_least + rules->axis_least;
   const bounded variance[2] = {{c[0].v + grown, c[0].off}, {c[2].v + grown, c[2].off}};
-  double q = reach_in_q(d, g->opacity);
-  reach_of_ellipse(variance, q, g);
+  double q = conic_oracle_reach_in_q(d, g->opacity);
+  conic_oracle_reach_of_ellipse(variance, q, g);
   bound_offset(d, unit, g);
   return q >= 0.0;
 }
@@ -395,7 +322,7 @@ static int bound_ellipse(const oracle_doubting *d, const bounded_frame *f, oracl
 /* Where planes through the eye touch the ellipsoid of q: (p_a − s·p_z)² = q·Σ(A_ka − s·A_kz)², solved for s. */
 static void reach_of_ellipsoid(const oracle_doubting *d, const bounded_frame *f, double q, oracle_uncertain *g) {
   const double focal[2] = {d->view->camera->fx, d->view->camera->fy}, z = f->mean[2].v;
-  reach_everywhere(g);
+  conic_oracle_reach_everywhere(g);
   double along = z * z;
   for (int k = 0; k < 3; k++)
     along -= q * f->axes[k][2].v * f->axes[k][2].v * (1.0 + 1e-6);
@@ -408,7 +335,7 @@ static void reach_of_ellipsoid(const oracle_doubting *d, const bounded_frame *f,
       mixed -= q * f->axes[k][axis].v * f->axes[k][2].v;
     }
     double root = sqrt(oracle_max(mixed * mixed - along * across, 0.0)) * (1.0 + 1e-3);
-    double margin = reach_margin_px + 1e-6 * focal[axis] * fabs(mixed) / along;
+    double margin = ORACLE_REACH_MARGIN_PX + 1e-6 * focal[axis] * fabs(mixed) / along;
     g->reach[0][axis] = focal[axis] * (mixed - root) / along + d->view->center_px[axis] - margin;
     g->reach[1][axis] = focal[axis] * (mixed + root) / along + d->view->center_px[axis] + margin;
   }
@@ -470,7 +397,7 @@ static int place_ray(const oracle_doubting *d, const bounded_frame *f, oracle_un
   }
   bound_offset(d, f->unit, g);
   g->is_placed = 1;
-  double q = reach_in_q(d, g->opacity);
+  double q = conic_oracle_reach_in_q(d, g->opacity);
   reach_of_ellipsoid(d, f, q, g);
   return q >= 0.0 && bound_ray(d, f, g);
 }
@@ -509,7 +436,7 @@ static int bound_disc_box(const oracle_doubting *d, const bounded_frame *f, orac
 static int bound_disc(const oracle_doubting *d, const bounded_frame *f, oracle_uncertain *g) {
   const conic_profile_row *rules = d->view->rules;
   bounded extent[2];
-  double q = reach_in_q(d, g->opacity);
+  double q = conic_oracle_reach_in_q(d, g->opacity);
   if (!bound_disc_box(d, f, g, extent))
     return 0;
   if (rules->coverage == CONIC_COVERAGE_TILES) {
@@ -517,16 +444,16 @@ static int bound_disc(const oracle_doubting *d, const bounded_frame *f, oracle_u
     radius.off = oracle_max(extent[0].off, extent[1].off);
     radius.v = oracle_max(radius.v, 3.0 * 0.707106);
     g->radius[0] = g->radius[1] = radius;
-    admit_square(d, radius, g);
+    conic_oracle_admit_square(d, radius, g);
   } else {
     for (int axis = 0; axis < 2; axis++)
       g->radius[axis] = bounded_scale(rules->disc_extent, extent[axis], d->model->setup_roundoff);
-    admit_box(d, g->radius, g);
+    conic_oracle_admit_box(d, g->radius, g);
   }
   g->is_placed = 1;
   reach_of_ellipsoid(d, f, q, g);
   for (int axis = 0; axis < 2; axis++) { /* or the dot, whose variance is ½ px² */
-    double half = sqrt(0.5 * q) + reach_margin_px + g->place[axis].off;
+    double half = sqrt(0.5 * q) + ORACLE_REACH_MARGIN_PX + g->place[axis].off;
     g->reach[0][axis] = oracle_min(g->reach[0][axis], g->place[axis].v - half);
     g->reach[1][axis] = oracle_max(g->reach[1][axis], g->place[axis].v + half);
   }
