@@ -262,6 +262,29 @@ static bounded extent_in_deviations(const oracle_doubting *d, bounded opacity) {
   return root.v > most ? (bounded){most, oracle_max(most - bounded_low(root), unit * most)} : root;
 }
 
+/* Its radii, and where the rules let it be drawn, of a covariance c on the screen whose determinant is `wide`. */
+static void bound_coverage(const oracle_doubting *d, const bounded c[3], bounded wide, oracle_uncertain *g) {
+  const conic_profile_row *rules = d->view->rules;
+  const double unit = d->model->setup_roundoff;
+  if (rules->coverage == CONIC_COVERAGE_TILES) {
+    bounded mean = bounded_scale(0.5, bounded_add(c[0], c[2], unit), unit);
+    bounded apart = bounded_subtract(square_of(mean, unit), wide, unit);
+    apart.v = oracle_max(apart.v, 0.1);
+    bounded root = bounded_root(bounded_add(mean, bounded_root(apart, unit), unit), unit);
+    g->radius[0] = g->radius[1] = bounded_scale(3.0, root, unit);
+    conic_oracle_admit_square(d, g->radius[0], g);
+  } else if (conic_oracle_has_radii(rules)) {
+    const bounded extent = extent_in_deviations(d, g->opacity);
+    for (int axis = 0; axis < 2; axis++)
+      g->radius[axis] = bounded_multiply(extent, bounded_root(c[2 * axis], unit), unit);
+  }
+  for (int axis = 0; axis < 2 && rules->clip > 0.0; axis++) {
+    const double half = 0.5 * (axis ? d->view->camera->height : d->view->camera->width);
+    bounded beyond = {rules->clip * half - fabs(g->place[axis].v - half), g->place[axis].off + 4.0 * unit * half};
+    ask_everywhere(beyond, 0.0, 1, g);
+  }
+}
+
 static int bound_ellipse(const oracle_doubting *d, const bounded_frame *f, oracle_uncertain *g) {
   const conic_profile_row *rules = d->view->rules;
   const double unit = f->unit, h = rules->dilation;
@@ -289,23 +312,7 @@ static int bound_ellipse(const oracle_doubting *d, const bounded_frame *f, oracl
   g->form[0] = bounded_rounded(bounded_divide(c[2], wide, unit), ORACLE_FLOAT_UNIT);
   g->form[1] = bounded_rounded(bounded_divide((bounded){-c[1].v, c[1].off}, wide, unit), ORACLE_FLOAT_UNIT);
   g->form[2] = bounded_rounded(bounded_divide(c[0], wide, unit), ORACLE_FLOAT_UNIT);
-  if (rules->coverage == CONIC_COVERAGE_TILES) {
-    bounded mean = bounded_scale(0.5, bounded_add(c[0], c[2], unit), unit);
-    bounded apart = bounded_subtract(square_of(mean, unit), wide, unit);
-    apart.v = oracle_max(apart.v, 0.1);
-    bounded root = bounded_root(bounded_add(mean, bounded_root(apart, unit), unit), unit);
-    g->radius[0] = g->radius[1] = bounded_scale(3.0, root, unit);
-    conic_oracle_admit_square(d, g->radius[0], g);
-  } else if (conic_oracle_has_radii(rules)) {
-    const bounded extent = extent_in_deviations(d, g->opacity);
-    for (int axis = 0; axis < 2; axis++)
-      g->radius[axis] = bounded_multiply(extent, bounded_root(c[2 * axis], unit), unit);
-  }
-  for (int axis = 0; axis < 2 && rules->clip > 0.0; axis++) {
-    const double half = 0.5 * (axis ? d->view->camera->height : d->view->camera->width);
-    bounded beyond = {rules->clip * half - fabs(g->place[axis].v - half), g->place[axis].off + 4.0 * unit * half};
-    ask_everywhere(beyond, 0.0, 1, g);
-  }
+  bound_coverage(d, c, wide, g);
   if (conic_profile_limits_axes(rules) && !bound_limited_form(d, c, wide, g))
     return 0;
   memcpy(g->covariance, c, sizeof c);
