@@ -34,8 +34,9 @@ static conic_status draw_sample(void *cookie, const conic_sample *sample, conic_
   conic_source_view view = *a->look->view;
   conic_status status = CONIC_OK;
   view.chance = conic_sequence_at(sample->index, CONIC_SEQUENCE_SURFACE);
-  if (view.transparency != CONIC_TRANSPARENCY_NONE && a->work->plan.lit != CONIC_LIT_NOT)
-    view.transparency = CONIC_TRANSPARENCY_CHANCE; /* what is lit has one depth and one normal */
+  if (view.transparency != CONIC_TRANSPARENCY_NONE &&
+      (a->work->plan.lit != CONIC_LIT_NOT || a->work->plan.is_composited))
+    view.transparency = CONIC_TRANSPARENCY_CHANCE; /* what is lit, or among Gaussians, has one depth and one normal */
   if (has_soft_sun(shot))
     status = conic_lighting_sample(a->work->context, &shot->render.lighting, shot->light.sun_radius_deg, sample->index,
                                    &render.lighting);

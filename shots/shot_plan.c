@@ -55,6 +55,8 @@ static const char *find_fault(const conic_source *source, const conic_shot *shot
     return "light is hidden from surfaces, not from Gaussians that are composited";
   if (shot->light.dome_stops > 0.0 && abilities & CONIC_SOURCE_COMPOSITES)
     return "eye-dome lighting is of surfaces, not of Gaussians that are composited";
+  if (shot->view.transparency != CONIC_TRANSPARENCY_NONE && !shot->n_samples && conic_source_surfaces(source))
+    return "surfaces among Gaussians let light through in the mean of samples: n_samples is above 0";
   if (shot->catchers && !conic_shot_is_lit(shot))
     return "a catcher needs light that may be hidden";
   if (shot->catchers | shot->holdouts && shot->view.samples > 1 && !conic_source_surfaces(source))

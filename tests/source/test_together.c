@@ -5,7 +5,7 @@
 #include "core/base/color.h"
 #include "core/lanes/instruction_sets.h"
 #include "source/surfaces_among.h"
-#include "tests/support/check.h"
+#include "tests/support/files.h"
 
 enum { SIDE = 48, PIXELS = SIDE * SIDE, MIDDLE = SIDE / 2 * SIDE + SIDE / 2 };
 
@@ -123,6 +123,34 @@ static void check_walls(conic_context *context, const char *const names[2]) {
     conic_source_close(source);
     conic_triangles_release(context, &set);
   }
+}
+
+/* A pane that stops half of the light, before the ball: what is behind it shows in the mean of samples. */
+static void check_pane(conic_context *context, const char *ball) {
+  char material[160], pane[160];
+  snprintf(material, sizeof material, "%s", files_write("pane.mtl", "newmtl pane\nKd 0.18 0.18 0.18\nd 0.5\n"));
+  snprintf(
+      pane, sizeof pane, "%s",
+      files_write("pane.obj", "mtllib pane.mtl\nusemtl pane\nv -9 -9 1\nv 9 -9 1\nv 9 9 1\nv -9 9 1\nf 1 4 3 2\n"));
+  const char *const names[] = {ball, pane};
+  conic_image image;
+  conic_renderer *renderer;
+  conic_shot shot = shot_of(CONIC_PROFILE_EXACT);
+  conic_source *source = open_scene(context, names, 2, NULL);
+  shot.view.transparency = CONIC_TRANSPARENCY_LAYERS;
+  shot.planes = 1u << CONIC_PLANE_RGBA;
+  CHECK_OK(conic_renderer_create(context, &renderer));
+  CHECK_OK(conic_image_allocate(context, SIDE, SIDE, shot.planes, &image));
+  CHECK(conic_shot_draw(source, renderer, &shot, &image, NULL) == CONIC_ERROR_ARGUMENT); /* no samples */
+  shot.n_samples = 64;
+  CHECK_OK(conic_shot_draw(source, renderer, &shot, &image, NULL));
+  for (int c = 0; c < 3; c++)
+    CHECK_NEAR(pixel_of(&image, MIDDLE)[c], 0.5 * conic_srgb_encode(0.18) + 0.5 * 0.8 * (0.2 + 0.25 * c), 0.02);
+  CHECK_NEAR(pixel_of(&image, MIDDLE)[3], 0.9, 0.02);
+  conic_image_release(context, &image);
+  conic_renderer_destroy(renderer);
+  conic_source_close(source);
+  CHECK(unlink(pane) == 0 && unlink(material) == 0);
 }
 
 /* All profiles, and several samples a pixel, as the oracle has them; and the same bits by every instruction set. */
@@ -306,15 +334,17 @@ static void check_shadow(conic_context *context, const char *const names[2]) {
 
 int main(void) {
   const char *const names[] = {"memory:gaussians:ball", "memory:triangles:wall"};
+  folder_make(files_folder);
   conic_context *context = check_context(2);
   conic_gaussians ball = balls(context, 1, 2.0, 0.0, 0.8f);
   CHECK_OK(conic_lend(context, names[0], &ball));
   check_walls(context, names);
+  check_pane(context, names[0]);
   check_profiles(context, names, 0);
   check_profiles(context, names, 1);
   check_scenes(context);
   check_shadow(context, names);
   conic_gaussians_release(context, &ball);
-  conic_context_destroy(context);
+  files_end(context);
   return check_result();
 }
