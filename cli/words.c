@@ -88,6 +88,7 @@ static const cli_word option_words[] = {
     {"ssao ambient-occlusion", "ao", NULL, "--ao 64 darkens what little light from around reaches"},
     {"shadows", "shadow", ""},
     {"unlit no-lighting", "shade", "none"},
+    {"shading lighting", "shade"},
     {"flat", "crease", "0"},
     {"hdri env envmap", "sky"},
     {"brightness", "exposure"},

@@ -3,6 +3,7 @@
 #include "core/base/color.h"
 #include "gaussians/scene/gaussian_set.h"
 #include "judge/diagnosis_samples.h"
+#include "oracle/gaussians/oracle_surface.h"
 
 /* --- pictures of surfels --- */
 
@@ -149,6 +150,7 @@ static conic_planted right_gaussians(const conic_gaussians *gaussians, const con
                          .prefilter = options->prefilter,
                          .most_degree = gaussians->sh_degree,
                          .is_opaque = judging->is_opaque,
+                         .surfaces = judging->surfaces,
                          .axes = 1.0};
   right.camera = fine_camera_of(camera, judging->samples);
   if (right.rules.takes_middle) {
@@ -203,6 +205,10 @@ conic_status conic_gaussian_diagnose(conic_context *context, const conic_gaussia
   conic_status status = conic_gaussians_check(context, gaussians, "diagnose");
   if (status == CONIC_OK)
     status = check_diagnosis(context, camera, image, classes, found, room, how.samples);
+  if (status == CONIC_OK && how.surfaces &&
+      !conic_oracle_surfaces_fit(how.surfaces, how.samples * image->width, how.samples * image->height,
+                                 conic_image_planes(image)))
+    status = conic_fail(context, CONIC_ERROR_ARGUMENT, "diagnose: the surfaces are not those of the picture's samples");
   if (status != CONIC_OK)
     return status;
   gaussian_world world = {context, gaussians, how.samples};

@@ -6,6 +6,9 @@
 static const struct {
   const char *name, *meaning;
 } meanings[] = {
+    {"surfaces-behind", "Gaussians behind surfaces are drawn, too."},
+    {"surfaces-before", "Surfaces hide the Gaussians before them, too."},
+    {"surfaces-linear", "The surfaces' linear colours are not encoded before Gaussians are mixed with them."},
     {"dilation-0", "Ellipses are not widened on the screen."},
     {"dilation-0.1", "Ellipses are widened by 0.1 square pixels."},
     {"dilation-0.5", "Ellipses are widened by half a square pixel."},

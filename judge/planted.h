@@ -1,6 +1,7 @@
 /* A picture with a mistake: where the scene, the camera, the rules or the finishing differ from the right ones. */
 #pragma once
 
+#include "conic/gaussian_judge.h"
 #include "conic/triangles.h"
 #include "gaussians/draw/gaussian_rules.h"
 #include "raster/view/slips.h"
@@ -26,6 +27,14 @@ typedef enum conic_planted_extent {
   CONIC_EXTENT_TILES, /* inria's */
   CONIC_EXTENT_EXACT  /* no end, where the profile has one */
 } conic_planted_extent;
+
+/* Where surfaces among Gaussians are in the order of compositing. */
+typedef enum conic_planted_surfaces {
+  CONIC_SURFACES_OWN = 0,
+  CONIC_SURFACES_BEHIND_ALL,
+  CONIC_SURFACES_BEFORE_ALL,
+  CONIC_SURFACES_LINEAR /* in their place, but in linear colours */
+} conic_planted_surfaces;
 
 /* How a file's numbers are read. */
 typedef enum conic_planted_reading {
@@ -80,7 +89,9 @@ typedef struct conic_planted {
   float shift_px[2];       /* between the places on the screen and those where the camera sees them */
   int most_degree;
   conic_planted_reading harmonics, rotation, scale, opacity;
-  conic_planted_transfer own_transfer; /* of each Gaussian's own colour */
+  conic_planted_transfer own_transfer;     /* of each Gaussian's own colour */
+  const conic_gaussian_surfaces *surfaces; /* null: there are none */
+  conic_planted_surfaces surfaces_are;
   /* Of surfels: */
   int is_of_surfels;
   conic_render_options options;

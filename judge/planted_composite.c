@@ -2,6 +2,7 @@
 
 #include "core/splats/kernel.h"
 #include "gaussians/draw/ray_meetings.h"
+#include "gaussians/draw/surfaces_join.h"
 #include "gaussians/draw/view_rays.h"
 
 /* A fine pixel during compositing. */
@@ -154,12 +155,45 @@ static int covers_fine(const conic_planted_frame *frame, uint32_t k, int x, int 
   return x >= box[0][0] && x <= box[1][0] && y >= box[0][1] && y <= box[1][1];
 }
 
-static void composite_fine(const conic_planted_frame *frame, const conic_composite_scratch *scratch, size_t n_listed,
-                           int x, int y, composite_sums *s) {
+/* Which fine pixel of the surfaces it is, if there is one there. */
+static int find_surface(const conic_planted *p, int x, int y, size_t *at) {
+  const conic_image *image = p->surfaces ? p->surfaces->image : NULL;
+  *at = image ? (size_t)y * (size_t)image->width + (size_t)x : 0;
+  return image && ((const float *)image->planes[CONIC_PLANE_RGBA])[4 * *at + 3] > 0.0f;
+}
+
+/* How deep Gaussians are composited at a surface. */
+static float depth_of_hiding(const conic_planted *p, size_t at) {
+  const float *z = p->surfaces->image->planes[CONIC_PLANE_Z];
+  return p->surfaces_are == CONIC_SURFACES_BEHIND_ALL   ? INFINITY
+         : p->surfaces_are == CONIC_SURFACES_BEFORE_ALL ? 0.0f
+                                                        : z[at];
+}
+
+/* The light that is left is the surface's. */
+static void composite_surface(const conic_planted *p, size_t at, composite_sums *s) {
+  const conic_image *image = p->surfaces->image;
+  const float *rgba = (const float *)image->planes[CONIC_PLANE_RGBA] + 4 * at,
+              *normal = image->planes[CONIC_PLANE_NORMAL];
+  const float z = ((const float *)image->planes[CONIC_PLANE_Z])[at];
+  const int is_linear = p->surfaces->is_linear || p->surfaces_are == CONIC_SURFACES_LINEAR;
+  for (size_t c = 0; c < 3; c++) {
+    s->color[c] += s->T * conic_surface_shown(rgba[c], rgba[3], is_linear);
+    s->normal[c] += normal ? s->T * normal[3 * at + c] : 0.0f;
+  }
+  s->weight += s->T;
+  s->z += s->T * z;
+  s->inverse_z += s->T / z;
+  s->count += 1.0f;
+  s->median_z = s->T > 0.5f ? z : s->median_z;
+  s->T = 0.0f;
+}
+
+static void composite_gaussians(const conic_planted_frame *frame, const conic_composite_scratch *scratch,
+                                size_t n_listed, int x, int y, float hiding_z, composite_sums *s) {
   const conic_gaussian_rules *rules = &frame->rules;
   const int is_by_ray = rules->shape == CONIC_SHAPE_RAY && frame->planted->order == CONIC_ORDER_OWN;
   size_t n_hits = 0;
-  *s = (composite_sums){.T = 1.0f};
   for (size_t i = 0; i < n_listed; i++) {
     uint32_t at = scratch->listed[i];
     if (!covers_fine(frame, at, x, y))
@@ -168,7 +202,7 @@ static void composite_fine(const conic_planted_frame *frame, const conic_composi
     const conic_ray_meeting m = meet_kept(frame, k, x, y);
     const float alpha = planted_alpha(frame, &m);
     const float z = rules->shape == CONIC_SHAPE_DISC && !(rules->disc_near > 0.0f) ? k->footprint.z : m.z;
-    if (alpha < 0.0f)
+    if (alpha < 0.0f || z >= hiding_z)
       continue;
     if (is_by_ray)
       scratch->hits[n_hits++] = (conic_planted_hit){frame->planted->is_reversed ? -z : z, alpha, at};
@@ -180,6 +214,17 @@ static void composite_fine(const conic_planted_frame *frame, const conic_composi
     if (!composite_kept(rules, frame->kept[scratch->hits[i].kept], fabsf(scratch->hits[i].z), scratch->hits[i].alpha,
                         s))
       return;
+}
+
+static void composite_fine(const conic_planted_frame *frame, const conic_composite_scratch *scratch, size_t n_listed,
+                           int x, int y, composite_sums *s) {
+  const conic_planted *p = frame->planted;
+  size_t at;
+  const int is_there = find_surface(p, x, y, &at);
+  *s = (composite_sums){.T = 1.0f};
+  composite_gaussians(frame, scratch, n_listed, x, y, is_there ? depth_of_hiding(p, at) : INFINITY, s);
+  if (is_there)
+    composite_surface(p, at, s);
 }
 
 /* The values of a pixel's middle sample; of an even number, the one before the middle. */

@@ -30,6 +30,7 @@ enum {
   OF_CROSS,
   OF_ALPHA_LEAST,
   OF_LIMIT,
+  OF_SURFACES,
   OF_METHOD,
   OF_SLIP,
   OF_AXES,
@@ -54,6 +55,9 @@ typedef struct suspected {
 } suspected;
 
 static const suspected of_gaussians[] = {
+    {"surfaces-behind", OF_SURFACES, 1, {CONIC_SURFACES_BEHIND_ALL}, {0.0}},
+    {"surfaces-before", OF_SURFACES, 1, {CONIC_SURFACES_BEFORE_ALL}, {0.0}},
+    {"surfaces-linear", OF_SURFACES, 1, {CONIC_SURFACES_LINEAR}, {0.0}},
     {"half-pixel", OF_SHIFT, 8, {-1, 1, -1, 1, -1, 1, 0, 0}, {-1.0, 1.0, 1.0, -1.0, 0.0, 0.0, -1.0, 1.0}},
     {"dilation-0", OF_DILATION, 1, {0}, {0.0}},
     {"dilation-0.1", OF_DILATION, 1, {0}, {0.1}},
@@ -260,6 +264,9 @@ static void plant_in_scene(const conic_suspect *s, conic_planted *p) {
     p->takes_any_color = !s->how;
     p->limits_color = s->how;
     break;
+  case OF_SURFACES:
+    p->surfaces_are = (conic_planted_surfaces)s->how;
+    break;
   case OF_OWN_TRANSFER:
     p->own_transfer = (conic_planted_transfer)s->how;
     break;
@@ -422,6 +429,8 @@ static int is_mistake(const conic_planted *right, const conic_suspect *s) {
            : s->how < 16                       ? right->most_degree > 0
            : s->how < 512                      ? right->most_degree > 1
                                                : right->most_degree > 2;
+  case OF_SURFACES:
+    return right->surfaces && !(s->how == CONIC_SURFACES_LINEAR && right->surfaces->is_linear);
   case OF_FORM:
   case OF_CROSS:
     return is_ellipse;

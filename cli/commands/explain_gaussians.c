@@ -2,6 +2,7 @@
  * way. */
 #include "cli/commands/gaussian_commands.h"
 #include "cli/render/sample_options.h"
+#include "cli/scene/surfaces_drawn.h"
 
 /* A number alone, or an array of several. */
 static void write_list(cli_json *json, const char *key, const double *values, int n) {
@@ -86,6 +87,13 @@ static void write_listing(cli_json *json, const conic_gaussian_listing *listing)
   for (int k = 0; k < CONIC_N_GAUSSIAN_PARTS; k++)
     cli_json_count(json, conic_gaussian_part_name((conic_gaussian_part)k), counts[k]);
   cli_json_close(json);
+  if (listing->has_surface) {
+    cli_json_object(json, "surface");
+    cli_json_count(json, "id", listing->surface_id);
+    cli_json_figures(json, NULL, {"depth", listing->surface_z}, {"weight", listing->surface_weight});
+    write_list(json, "color", listing->surface_color, 3);
+    cli_json_close(json);
+  }
   cli_json_array(json, "contributions");
   for (size_t i = 0; i < listing->n; i++)
     write_entry(json, &listing->entries[i]);
@@ -111,6 +119,7 @@ int cli_explain_composited(cli_session *session, cli_render_job *scene, int x, i
   const conic_gaussian_options options = cli_gaussian_options(scene);
   conic_gaussian_listing listing = {.n = 0};
   conic_image image = {.width = 0};
+  cli_surfaces_drawn drawn = {.given = NULL};
   conic_camera camera;
   conic_status status = cli_sample_camera(session, scene, &camera);
   if (status == CONIC_OK && (x >= camera.width || y >= camera.height))
@@ -121,10 +130,13 @@ int cli_explain_composited(cli_session *session, cli_render_job *scene, int x, i
     status = conic_source_draw(scene->source, scene->renderer, &camera, &scene->shot.render, &scene->shot.view, &image,
                                &scene->statistics);
   if (status == CONIC_OK)
-    status = conic_gaussian_explain(session->context, conic_source_gaussians(scene->source), &camera, &options, NULL, x,
-                                    y, &listing);
+    status = cli_draw_surfaces(session, scene, &camera, CLI_COMPOSITED_PLANES, &drawn);
+  if (status == CONIC_OK)
+    status = conic_gaussian_explain(session->context, conic_source_gaussians(scene->source), &camera, &options, NULL,
+                                    drawn.given, x, y, &listing);
   int exit_code = status == CONIC_OK ? write_explanation(session, scene, &image, x, y, &listing) : cli_exit_of(status);
   conic_gaussian_listing_release(session->context, &listing);
+  conic_image_release(session->context, &drawn.image);
   conic_image_release(session->context, &image);
   return exit_code;
 }

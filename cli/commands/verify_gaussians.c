@@ -130,7 +130,7 @@ int cli_verify_composited(cli_session *session, cli_render_job *scene, size_t n_
                           conic_image *image) {
   gaussian_report r = {.scene = scene};
   conic_camera camera;
-  conic_image drawn = {0};
+  cli_surfaces_drawn drawn = {.given = NULL};
   const conic_gaussian_options options = cli_gaussian_options(scene);
   conic_gaussian_judging_init(&r.judging);
   r.judging.n_pixels = n_pixels;
@@ -145,12 +145,11 @@ int cli_verify_composited(cli_session *session, cli_render_job *scene, size_t n_
     status = cli_draw_surfaces(session, scene, &camera, conic_image_planes(image), &drawn);
   double start = cli_seconds();
   if (status == CONIC_OK) {
-    const conic_gaussians *gaussians = conic_source_gaussians(scene->source);
-    const conic_gaussian_surfaces surfaces = {&drawn, gaussians->is_linear, (uint32_t)gaussians->count};
-    r.judging.surfaces = drawn.planes[CONIC_PLANE_RGBA] ? &surfaces : NULL;
-    status = conic_gaussian_judge(session->context, gaussians, &camera, &options, &r.judging, image, NULL, &r.verdict);
+    r.judging.surfaces = drawn.given;
+    status = conic_gaussian_judge(session->context, conic_source_gaussians(scene->source), &camera, &options,
+                                  &r.judging, image, NULL, &r.verdict);
   }
-  conic_image_release(session->context, &drawn);
+  conic_image_release(session->context, &drawn.image);
   r.oracle_ms = 1e3 * (cli_seconds() - start);
   r.n_pixels = (size_t)image->width * (size_t)image->height;
   return status == CONIC_OK ? tell_judgement(session, &r) : cli_exit_of(status);

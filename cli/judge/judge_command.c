@@ -140,6 +140,7 @@ static int judge_scene(cli_session *session, void *cookie) {
   free(job->classes);
   free(job->ranges);
   free(job->wrong_values);
+  conic_image_release(session->context, &job->drawn.image);
   conic_image_release(session->context, &job->ours);
   conic_picture_release(session->context, &job->picture);
   return exit_code;

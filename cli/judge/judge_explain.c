@@ -27,8 +27,9 @@ static conic_status explain_gaussian_pixel(cli_session *session, cli_judge_job *
                                            cli_judge_worst *w) {
   const conic_gaussian_options options = cli_gaussian_options(&job->scene);
   conic_gaussian_listing listing;
-  conic_status status = conic_gaussian_explain(session->context, conic_source_gaussians(job->scene.source),
-                                               &job->camera, &options, model, w->fault.x, w->fault.y, &listing);
+  conic_status status =
+      conic_gaussian_explain(session->context, conic_source_gaussians(job->scene.source), &job->camera, &options, model,
+                             job->drawn.given, w->fault.x, w->fault.y, &listing);
   if (status != CONIC_OK)
     return status;
   for (size_t i = 0; i < listing.n; i++) {
@@ -51,6 +52,8 @@ static conic_status explain_gaussian_pixel(cli_session *session, cli_judge_job *
 static conic_status explain_gaussian_pixels(cli_session *session, cli_judge_job *job) {
   conic_float_model model;
   conic_status status = CONIC_OK;
+  if (job->drawn.given && job->scene.shot.view.samples > 1) /* the surfaces of a pixel's middle are not drawn */
+    return CONIC_OK;
   conic_float_model_init(&model, (conic_float_kind)job->floats);
   for (int k = 0; k < job->found.n_worst && status == CONIC_OK; k++)
     status = explain_gaussian_pixel(session, job, &model, &job->found.worst[k]);
@@ -68,7 +71,7 @@ conic_status cli_judge_explain_vague(cli_session *session, cli_judge_job *job) {
   conic_float_model_init(&model, (conic_float_kind)job->floats);
   conic_status status =
       conic_gaussian_explain(session->context, conic_source_gaussians(job->scene.source), &job->camera, &options,
-                             &model, (int)at % width, (int)at / width, &listing);
+                             &model, job->drawn.given, (int)at % width, (int)at / width, &listing);
   if (status != CONIC_OK)
     return status;
   for (size_t i = 0; i < listing.n; i++) {

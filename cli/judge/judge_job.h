@@ -1,7 +1,7 @@
 /* One `conic judge`: its arguments and its results. */
 #pragma once
 
-#include "cli/scene/render_job.h"
+#include "cli/scene/surfaces_drawn.h"
 
 enum { CLI_JUDGE_MOST_REASONS = CONIC_MAX_UNSTABLE_REASONS, CLI_JUDGE_MOST_PARTS = 4, CLI_JUDGE_MOST_FAULTS = 8 };
 
@@ -69,6 +69,7 @@ typedef struct cli_judge_job {
   uint8_t *classes; /* of each pixel; CONIC_N_PIXEL_CLASSES if it was not judged */
   float *ranges;    /* of each judged pixel of a Gaussian scene, as in conic_gaussian_judging; so are these */
   uint32_t *wrong_values;
+  cli_surfaces_drawn drawn; /* what is among a Gaussian scene */
   cli_judgement found;
   conic_image ours; /* conic's own picture, if it is shown */
   double seconds[CLI_JUDGE_N_STAGES];

@@ -30,8 +30,12 @@ conic_status cli_judge_gaussians(cli_session *session, cli_judge_job *job) {
   judging.greatest = greatest_in(job);
   judging.ranges = job->ranges;
   judging.faults = job->wrong_values;
-  conic_status status = conic_gaussian_judge(session->context, conic_source_gaussians(job->scene.source), &job->camera,
-                                             &options, &judging, &job->picture.image, job->classes, &verdict);
+  conic_status status =
+      cli_draw_surfaces(session, &job->scene, &job->camera, conic_image_planes(&job->picture.image), &job->drawn);
+  judging.surfaces = job->drawn.given;
+  if (status == CONIC_OK)
+    status = conic_gaussian_judge(session->context, conic_source_gaussians(job->scene.source), &job->camera, &options,
+                                  &judging, &job->picture.image, job->classes, &verdict);
   if (status != CONIC_OK)
     return status;
   memcpy(found->pixels, verdict.pixels, sizeof found->pixels);
@@ -86,6 +90,7 @@ static conic_status diagnose_gaussians(cli_session *session, cli_judge_job *job)
   judging.is_opaque = job->scene.shot.render.has_background;
   judging.greatest = greatest_in(job);
   judging.ranges = job->ranges;
+  judging.surfaces = job->drawn.given;
   return conic_gaussian_diagnose(session->context, conic_source_gaussians(job->scene.source), &job->camera, &options,
                                  &judging, &job->picture.image, job->classes, job->found.faults, CLI_JUDGE_MOST_FAULTS,
                                  &job->found.n_faults);

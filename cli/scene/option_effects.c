@@ -28,8 +28,7 @@ static const struct {
      "--projection is of pictures by conic render, and of Gaussian scenes by --profile exact"},
     {F(PROJECTED) | F(ASKING), 0, F(EXACT),
      "--projection is of pictures by conic render, and of Gaussian scenes by --profile exact"},
-    {F(COMPOSITED), F(MATTES) | F(EXPOSED), 0,
-     "--aov cryptomatte and --exposure auto are of splats; give --profile surface, too"},
+    {F(COMPOSITED) | F(EXPOSED), 0, 0, "--exposure auto is of splats; give --profile surface, too"},
     {F(DEEP) | F(MIXED) | F(MASKED), 0, 0, "--deep has surfaces among Gaussians as they are without --ao and --shadow"},
     {F(MIXED) | F(OPENCL), 0, 0, "--device opencl draws Gaussian scenes, or surfaces, not both together"},
     {F(DEEP) | F(COMPOSITED) | F(PROJECTED), 0, 0, "--deep is of perspective pictures"},
@@ -260,7 +259,7 @@ static void note_parts(cli_render_job *job, const cli_scene_words *words) {
       {job->boxes_path != NULL, "show boxes", {.on = F(NODES) | F(LEVELS), .apart = F(MAP)}},
       {job->legend_path != NULL, "show legend:OUT", {.on = F(VALUED), .apart = F(MAP)}},
       {job->has_legend, "show legend", {.apart = F(MAP)}}, /* which a warning says, where there is none */
-      {job->has_mattes, "aov cryptomatte", {.on = CLI_SURFACES, .apart = F(MAP)}},
+      {job->has_mattes, "aov cryptomatte", {.on = CLI_SURFACES | F(COMPOSITED), .apart = F(MAP)}},
       {HAS(TRANSPARENCY), "aov T", {.on = F(COMPOSITED)}},
       {HAS(MEDIAN_Z), "aov medianZ", {.on = F(COMPOSITED)}},
       {HAS(INVERSE_Z), "aov inverseZ", {.on = F(COMPOSITED)}},

@@ -137,6 +137,11 @@ static int settle_roles(const cli_session *session, const cli_render_job *job, c
   return CLI_DONE;
 }
 
+/* Gaussian scenes with surfaces among them. */
+static int takes_both(const char *command) {
+  return strcmp(command, "verify") == 0 || strcmp(command, "judge") == 0 || strcmp(command, "explain") == 0;
+}
+
 int cli_scene_check(const cli_session *session, cli_scene_words *words, cli_render_job *job) {
   int answer = check_each_value(session, words, job);
   if (job->n_inputs == 0)
@@ -165,8 +170,8 @@ int cli_scene_check(const cli_session *session, cli_scene_words *words, cli_rend
       !cli_lod_is_wanted(job) && !job->boxes_path && !(job->is_for_looking && job->abilities & CONIC_SOURCE_STREAMS);
   answer = cli_effects_check(session, words, job);
   if (answer == CLI_DONE && job->abilities & CONIC_SOURCE_MIXES && !job->is_for_looking &&
-      strcmp(session->command, "verify") != 0)
-    answer = cli_usage("%s: it takes Gaussian scenes, or surfaces; conic render and conic verify take both together",
+      !takes_both(session->command))
+    answer = cli_usage("%s: it takes Gaussian scenes, or surfaces; conic render, verify, judge and explain take both",
                        session->command);
   if (answer == CLI_DONE && job->abilities & CONIC_SOURCE_MIXES && job->is_aov_given &&
       job->shot.planes & (1u << CONIC_PLANE_AO | 1u << CONIC_PLANE_SHADOW | 1u << CONIC_PLANE_DOUBT))

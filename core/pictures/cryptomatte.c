@@ -33,18 +33,19 @@ uint32_t conic_cryptomatte_bits(const char *name) {
 /* A thing in a pixel, and its coverage. */
 typedef struct matte {
   uint32_t bits;
-  unsigned n_samples;
+  double covered;
 } matte;
 
 static int goes_first(const matte *a, const matte *b) {
-  return a->n_samples != b->n_samples ? a->n_samples > b->n_samples : a->bits < b->bits;
+  return a->covered != b->covered ? a->covered > b->covered : a->bits < b->bits;
 }
 
-static unsigned count_same(const uint32_t *bits, size_t n_samples, size_t first) {
-  unsigned n = 0;
+static double add_same(const uint32_t *bits, const float *shares, size_t n_samples, size_t first) {
+  double sum = 0.0;
   for (size_t i = first; i < n_samples; i++)
-    n += bits[i] == bits[first];
-  return n;
+    if (bits[i] == bits[first])
+      sum += shares ? (double)shares[i] : 1.0;
+  return shares ? sum : sum / (double)n_samples;
 }
 
 static int is_known(const uint32_t *bits, size_t i) {
@@ -56,13 +57,16 @@ static int is_known(const uint32_t *bits, size_t i) {
   return before < i;
 }
 
-void conic_cryptomatte_rank(const uint32_t *bits, size_t n_samples, conic_image *image, size_t pixel) {
+void conic_cryptomatte_rank(const uint32_t *bits, const float *shares, size_t n_samples, conic_image *image,
+                            size_t pixel) {
   matte ranks[DEPTH + 1];
   size_t n = 0;
   for (size_t i = 0; i < n_samples; i++) {
     if (bits[i] == 0 || is_known(bits, i))
       continue;
-    matte here = {bits[i], count_same(bits, n_samples, i)};
+    matte here = {bits[i], add_same(bits, shares, n_samples, i)};
+    if (!(here.covered > 0.0))
+      continue;
     size_t at = n;
     for (; at > 0 && goes_first(&here, &ranks[at - 1]); at--)
       ranks[at] = ranks[at - 1];
@@ -75,7 +79,7 @@ void conic_cryptomatte_rank(const uint32_t *bits, size_t n_samples, conic_image 
     if (i >= n)
       continue;
     memcpy(pair, &ranks[i].bits, sizeof ranks[i].bits);
-    pair[1] = (float)((double)ranks[i].n_samples / (double)n_samples);
+    pair[1] = (float)ranks[i].covered;
   }
 }
 

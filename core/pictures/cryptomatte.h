@@ -15,9 +15,11 @@ uint32_t conic_cryptomatte_hash(const char *text);
  * not be a normal number. Never 0. */
 uint32_t conic_cryptomatte_bits(const char *name);
 
-/* Fills a pixel of the image's matte planes from its samples; bits[i] is the thing of sample i, 0: none. At most 6
- * things are kept, the most covered first, equally covered ones by their bits. */
-void conic_cryptomatte_rank(const uint32_t *bits, size_t n_samples, conic_image *image, size_t pixel);
+/* Fills a pixel of the image's matte planes from its samples; bits[i] is the thing of sample i, 0: none, and shares[i]
+ * how much of the pixel that is; null: all are as much. At most 6 things are kept, the most covered first, equally
+ * covered ones by their bits. */
+void conic_cryptomatte_rank(const uint32_t *bits, const float *shares, size_t n_samples, conic_image *image,
+                            size_t pixel);
 
 /* The names so far, in JSON: begins as zero bytes. */
 typedef struct conic_cryptomatte_manifest {

@@ -141,10 +141,11 @@ typedef enum conic_gaussian_part {
   CONIC_PART_HIDDEN = 1,  /* compositing had ended */
   CONIC_PART_FAINT = 2,   /* α is below its least, or q below 0 */
   CONIC_PART_OUTSIDE = 3, /* the pixel is not in its tiles, in its box or within the cutoff */
-  CONIC_PART_NEAR = 4     /* it is too near, or behind the eye */
+  CONIC_PART_NEAR = 4,    /* it is too near, or behind the eye */
+  CONIC_PART_BEHIND = 5   /* it is behind a surface */
 } conic_gaussian_part;
 
-#define CONIC_N_GAUSSIAN_PARTS 5
+#define CONIC_N_GAUSSIAN_PARTS 6
 
 /* "composited", "hidden" …; null for a number that is none. */
 CONIC_API const char *conic_gaussian_part_name(conic_gaussian_part part);
@@ -165,16 +166,19 @@ typedef struct conic_gaussian_listing {
   conic_gaussian_entry *entries; /* in the order of compositing */
   size_t n;
   conic_gaussian_bound bound;
-  int has_ended; /* compositing ended before the last of them */
+  int has_ended;   /* compositing ended before the last of them */
+  int has_surface; /* there is a surface at the pixel, which takes the light that is left: */
+  double surface_z, surface_weight, surface_color[3]; /* its colour as Gaussians have theirs */
+  uint32_t surface_id, reserved_int;
   uint64_t reserved[4];
 } conic_gaussian_listing;
 
-/* Lists every Gaussian that reaches the pixel. On success the caller owns *listing. Errors: as
- * conic_gaussian_bound_pixels. */
+/* Lists every Gaussian that reaches the pixel of a picture of one sample a pixel, among the given surfaces (null: there
+ * are none). On success the caller owns *listing. Errors: as conic_gaussian_bound_pixels. */
 CONIC_API conic_status conic_gaussian_explain(conic_context *context, const conic_gaussians *gaussians,
                                               const conic_camera *camera, const conic_gaussian_options *options,
-                                              const conic_float_model *model, int x, int y,
-                                              conic_gaussian_listing *listing);
+                                              const conic_float_model *model, const conic_gaussian_surfaces *surfaces,
+                                              int x, int y, conic_gaussian_listing *listing);
 CONIC_API void conic_gaussian_listing_release(conic_context *context, conic_gaussian_listing *listing);
 
 CONIC_END_C

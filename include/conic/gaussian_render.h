@@ -104,5 +104,16 @@ CONIC_API conic_status conic_gaussians_write_deep(conic_context *context, const 
                                                   const conic_image *surfaces, const char *path,
                                                   const conic_image *header);
 
+/* Whose share of the light an id is: of a Gaussian, or, counted on after these, of a surface. */
+typedef size_t conic_gaussian_namer(const void *cookie, uint32_t id);
+
+/* Finds how much of the light of each pixel is whose: shares[n_names·pixel + name_of(cookie, id)], for names below
+ * n_names; together they are the pixel's alpha. The camera, and the surfaces (as above), are of samples × samples a
+ * pixel. Errors: as conic_gaussians_render. */
+CONIC_API conic_status conic_gaussians_find_shares(conic_context *context, const conic_gaussians *gaussians,
+                                                   const conic_camera *camera, const conic_gaussian_options *options,
+                                                   const conic_image *surfaces, int samples, size_t n_names,
+                                                   conic_gaussian_namer *name_of, const void *cookie, float *shares);
+
 CONIC_END_C
 #endif

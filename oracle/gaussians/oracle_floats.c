@@ -36,4 +36,4 @@ const char *conic_gaussian_class_name(conic_gaussian_class number) {
 }
 
 CONIC_DEFINE_NAMES(conic_gaussian_part_name, conic_gaussian_part, CONIC_N_GAUSSIAN_PARTS, "composited", "hidden",
-                   "faint", "outside", "near")
+                   "faint", "outside", "near", "behind")

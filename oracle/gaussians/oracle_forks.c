@@ -448,18 +448,22 @@ static int count_doubtful(const oracle_meeting *meetings, size_t n) {
   return n_doubtful;
 }
 
+int conic_oracle_is_before_surface(const oracle_surface *surface, oracle_meeting *m) {
+  if (m->covers && !((float)m->z_v < surface->z)) {
+    m->covers = 0;
+    m->part = CONIC_PART_BEHIND;
+  }
+  if (m->z[1] >= surface->z)
+    m->doubts |= 1u << CONIC_DOUBT_SURFACE;
+  return m->z[0] < surface->z;
+}
+
 /* Leaves out what is behind the surface for sure; what may be is in doubt. Returns how many are left. */
 static size_t leave_hidden(const oracle_surface *surface, oracle_meeting *meetings, size_t n) {
   size_t left = 0;
-  for (size_t i = 0; i < n; i++) {
-    oracle_meeting *m = &meetings[i];
-    if (m->z[0] >= surface->z)
-      continue;
-    if (m->z[1] >= surface->z)
-      m->doubts |= 1u << CONIC_DOUBT_SURFACE;
-    m->covers = m->covers && (float)m->z_v < surface->z;
-    meetings[left++] = *m;
-  }
+  for (size_t i = 0; i < n; i++)
+    if (conic_oracle_is_before_surface(surface, &meetings[i]))
+      meetings[left++] = meetings[i];
   return left;
 }
 

@@ -255,16 +255,6 @@ static conic_status judge_all(oracle_entry *e, judge_job *j, conic_gaussian_verd
   return status;
 }
 
-/* Whether there is a sample of the surfaces, with all that is judged, for each of the picture. */
-static int fits_samples(const conic_gaussian_judging *judging, const conic_image *image) {
-  const conic_image *surfaces = judging->surfaces->image;
-  const unsigned rgba = 1u << CONIC_PLANE_RGBA, z = 1u << CONIC_PLANE_Z, normal = 1u << CONIC_PLANE_NORMAL,
-                 id = 1u << CONIC_PLANE_ID, last = 1u << CONIC_PLANE_LAST, planes = conic_image_planes(image);
-  const unsigned wanted = rgba | z | (planes & normal) | (planes & (id | last) ? id : 0);
-  return surfaces->width == judging->samples * image->width && surfaces->height == judging->samples * image->height &&
-         !(wanted & ~conic_image_planes(surfaces));
-}
-
 /* The options as this version has them. Errors: ARGUMENT. */
 static conic_status take_judging(conic_context *context, const conic_gaussian_judging *judging,
                                  const conic_camera *camera, const conic_image *image, conic_gaussian_judging *own) {
@@ -275,7 +265,8 @@ static conic_status take_judging(conic_context *context, const conic_gaussian_ju
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "judge: the image is not of the camera's size");
   if (!conic_oracle_evidence_fits(image, own->greatest))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "judge: the greatest values lack a plane of the image");
-  if (own->surfaces && !fits_samples(own, image))
+  if (own->surfaces && !conic_oracle_surfaces_fit(own->surfaces, own->samples * image->width,
+                                                  own->samples * image->height, conic_image_planes(image)))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "judge: the surfaces are not those of the picture's samples");
   return CONIC_OK;
 }

@@ -2,6 +2,7 @@
 
 #include "core/image/view_arguments.h"
 #include "oracle/gaussians/oracle_cells.h"
+#include "oracle/gaussians/oracle_surface.h"
 
 conic_status conic_oracle_enter(conic_context *context, const conic_gaussians *gaussians, const conic_camera *camera,
                                 const conic_gaussian_options *options, const conic_float_model *model, int samples,
@@ -79,8 +80,8 @@ static void fill_entry(const oracle_doubting *d, const oracle_meeting *m, listin
 }
 
 /* Bounds the meetings that may cover, and copies their notes back to the list of all. */
-static conic_status bound_meetings(const oracle_bound_request *b, oracle_meeting *meetings, size_t n,
-                                   conic_gaussian_bound *bound) {
+static conic_status bound_meetings(const oracle_bound_request *b, const oracle_surface *surface,
+                                   oracle_meeting *meetings, size_t n, conic_gaussian_bound *bound) {
   oracle_meeting *those = conic_memory_allocate(b->context, n, sizeof *those);
   size_t *from = conic_memory_allocate(b->context, n, sizeof *from), n_those = 0;
   oracle_step *steps = conic_memory_allocate(b->context, n, sizeof *steps);
@@ -90,7 +91,7 @@ static conic_status bound_meetings(const oracle_bound_request *b, oracle_meeting
         from[n_those] = i;
         those[n_those++] = meetings[i];
       }
-    conic_oracle_composite(&b->doubting, those, n_those, b->background, NULL, steps, bound);
+    conic_oracle_composite(&b->doubting, those, n_those, b->background, surface, steps, bound);
     for (size_t i = 0; i < n_those; i++)
       meetings[from[i]].noted = those[i].noted;
   }
@@ -99,10 +100,40 @@ static conic_status bound_meetings(const oracle_bound_request *b, oracle_meeting
   return status;
 }
 
+static void fill_surface(const oracle_surface *surface, double T, conic_gaussian_listing *to) {
+  to->has_surface = 1;
+  to->surface_z = surface->z;
+  to->surface_weight = T;
+  to->surface_id = surface->id;
+  memcpy(to->surface_color, surface->color, sizeof to->surface_color);
+}
+
+/* Lists the meetings of a pixel, which are in their order. */
+static conic_status list_meetings(const oracle_bound_request *b, const oracle_surface *surface,
+                                  oracle_meeting *meetings, size_t n, conic_gaussian_listing *listing) {
+  listing_run run = {1.0, 0};
+  for (size_t i = 0; i < n && surface; i++)
+    meetings[i].may_cover &= conic_oracle_is_before_surface(surface, &meetings[i]);
+  conic_status status = bound_meetings(b, surface, meetings, n, &listing->bound);
+  if (status == CONIC_OK && !(listing->entries = conic_memory_allocate(b->context, n, sizeof *listing->entries)))
+    status = CONIC_ERROR_MEMORY;
+  if (status != CONIC_OK)
+    return status;
+  for (size_t i = 0; i < n; i++)
+    fill_entry(&b->doubting, &meetings[i], &run, &listing->entries[i]);
+  listing->n = n;
+  listing->has_ended = run.has_ended;
+  if (surface)
+    fill_surface(surface, run.T, listing);
+  return CONIC_OK;
+}
+
 conic_status conic_gaussian_explain(conic_context *context, const conic_gaussians *gaussians,
                                     const conic_camera *camera, const conic_gaussian_options *options,
-                                    const conic_float_model *model, int x, int y, conic_gaussian_listing *listing) {
+                                    const conic_float_model *model, const conic_gaussian_surfaces *surfaces, int x,
+                                    int y, conic_gaussian_listing *listing) {
   oracle_entry e;
+  oracle_surface surface;
   oracle_uncertain *placed = NULL;
   oracle_meeting *meetings = NULL;
   size_t n = 0;
@@ -110,17 +141,13 @@ conic_status conic_gaussian_explain(conic_context *context, const conic_gaussian
   conic_status status = conic_oracle_enter(context, gaussians, camera, options, model, 1, &e);
   if (status == CONIC_OK && (x < 0 || y < 0 || x >= camera->width || y >= camera->height))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "explain: the pixel is not in the picture");
+  if (status == CONIC_OK && surfaces && !conic_oracle_surfaces_fit(surfaces, camera->width, camera->height, 0))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "explain: the surfaces are not those of the picture's pixels");
+  int is_there = status == CONIC_OK && surfaces && conic_oracle_surface_at(surfaces, x, y, &surface);
   if (status == CONIC_OK)
     status = conic_oracle_meet_all(&e.bounding, x + 0.5, y + 0.5, &placed, &meetings, &n);
   if (status == CONIC_OK)
-    status = bound_meetings(&e.bounding, meetings, n, &listing->bound);
-  if (status == CONIC_OK && !(listing->entries = conic_memory_allocate(context, n, sizeof *listing->entries)))
-    status = CONIC_ERROR_MEMORY;
-  listing_run run = {1.0, 0};
-  for (size_t i = 0; i < n && status == CONIC_OK; i++)
-    fill_entry(&e.bounding.doubting, &meetings[i], &run, &listing->entries[i]);
-  listing->n = status == CONIC_OK ? n : 0;
-  listing->has_ended = run.has_ended;
+    status = list_meetings(&e.bounding, is_there ? &surface : NULL, meetings, n, listing);
   conic_memory_release_these(context, placed, meetings);
   return status;
 }

@@ -9,5 +9,8 @@ typedef struct oracle_surface {
   uint32_t id;
 } oracle_surface;
 
+/* Whether the pictures of surfaces are of that size, and have all that a picture of these planes needs of them. */
+int conic_oracle_surfaces_fit(const conic_gaussian_surfaces *surfaces, int width, int height, unsigned planes);
+
 /* That of sample (x, y) of the pictures of surfaces; returns 0 where there is none. */
 int conic_oracle_surface_at(const conic_gaussian_surfaces *surfaces, int x, int y, oracle_surface *surface);

@@ -76,6 +76,9 @@ typedef struct oracle_step {
   int is_sure, may_be_before; /* that it is composited; that the step before it comes after it */
 } oracle_step;
 
+/* Notes of a Gaussian at a pixel how it lies to the surface there. Returns whether it may be before it. */
+int conic_oracle_is_before_surface(const oracle_surface *surface, oracle_meeting *meeting);
+
 /* Composites the meetings that may cover the pixel, which stand in the order of the double run, and notes at each what
  * is in doubt. A surface hides those behind it, and the background; null: there is none. `steps` has room for as many
  * as there are meetings, which may be put together. */

@@ -65,6 +65,17 @@ run 2 explain two.splat --profile exact --size 40x40 --splat 0
 run 0 explain two.ply --profile surface --size 40x40 --splat 0
 run 2 render two.ply --profile surface --size 40x40 --aov doubt -o a.exr
 
+# With a surface behind them
+printf 'v -9 -9 3\nv 9 -9 3\nv 0 12 3\nf 1 3 2\n' > wall.obj
+both=(two.splat wall.obj --profile gsplat-1.6 --size 40x40)
+run 0 render "${both[@]}" -o both.exr
+run 0 judge "${both[@]}" --picture both.exr
+run 1 judge "${both[@]}" --picture a.exr
+run 0 explain "${both[@]}" --pixel 20,20
+has '"surface": {'
+run 2 project "${both[@]}" -o t.csv
+grep -q 'conic render, verify, judge and explain take both' err || fail "$(cat err)"
+
 if [[ ! -e $data/biker.spz ]] || ! "$conic" --version | grep -q '^In this build:.*zstd'; then
   echo "skipped: $data/biker.spz is not there, or this build does not read it"
   [[ $failures -eq 0 ]]

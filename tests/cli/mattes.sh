@@ -55,6 +55,13 @@ run 0 render mesh.obj --as hybrid --size 64x48 --cryptomatte -o h.exr
 grep -qaE '\{"mesh/[0-9]+":"[0-9a-f]{8}"' h.exr || fail "no manifest of clusters"
 run 0 render knot.ply $picture --method patch --cryptomatte -o p.exr
 
+# Gaussians and surfaces, which share the light; what is held out has no name
+run 0 make gaussians -n 300 -o "g.ply"
+gaussians=(g.ply knot.ply mesh.obj --holdout mesh.obj --profile gsplat-1.6 --size 48x40 --as auto)
+run 0 render "${gaussians[@]}" --cryptomatte --samples 2 -o g.exr
+grep -qaE '\{"g":"[0-9a-f]{8}","knot":"cdba143b"\}' g.exr || fail "not the names of Gaussians and surfaces"
+run 0 render g.ply knot.ply --profile surface --size 48x40 --cryptomatte -o s.exr
+
 # Each frame has its own
 run 0 render "${inputs[@]}" $picture --cryptomatte -o t.exr --turntable 2
 cmp -s t.0001.exr t.0002.exr && fail "the frames of a turntable are the same"
@@ -76,6 +83,7 @@ oiiotool a.exr --ch CryptoObject00.A --printstats | grep -qE 'Max: 0\.[1-9]' || 
 sum_is_alpha t.0002.exr
 sum_is_alpha h.exr
 sum_is_alpha p.exr
+sum_is_alpha g.exr
 run 0 render "${inputs[@]}" --size 300x256 --zoom 3 --as auto --samples 16 --cryptomatte -o bands.exr # two bands of samples
 sum_is_alpha bands.exr
 [[ $failures -eq 0 ]]

@@ -182,7 +182,7 @@ static const unsigned judged =
 static void tell_pixel(conic_context *context, const plain_evaluation *e, const conic_gaussian_options *options,
                        const conic_float_model *model, int x, int y) {
   conic_gaussian_listing listing;
-  CHECK_OK(conic_gaussian_explain(context, &e->scene, &e->camera, options, model, x, y, &listing));
+  CHECK_OK(conic_gaussian_explain(context, &e->scene, &e->camera, options, model, NULL, x, y, &listing));
   for (size_t k = 0; k < listing.n; k++) {
     const conic_gaussian_entry *g = &listing.entries[k];
     printf("  Gaussian %u, %s: q %.9g (%.9g to %.9g), alpha %.9g (%.9g to %.9g), z %.9g, doubts %x\n", g->index,

@@ -391,7 +391,7 @@ static void test_listing(conic_context *context) {
     conic_gaussian_options_init(&options);
     options.profile = (conic_gaussian_profile)profile;
     options.background[1] = 0.5f;
-    CHECK_OK(conic_gaussian_explain(context, &scene, &camera, &options, NULL, 30, 22, &listing));
+    CHECK_OK(conic_gaussian_explain(context, &scene, &camera, &options, NULL, NULL, 30, 22, &listing));
     double sum = 0.0, T = 1.0, key = -INFINITY;
     size_t n = 0;
     for (size_t i = 0; i < listing.n; i++) {

@@ -319,7 +319,8 @@ static void freeze(conic_context *context, const conic_gaussians *scene, const c
                    const conic_gaussian_options *options, frozen *f) {
   for (int pixel = 0; pixel < N_PIXELS; pixel++) {
     conic_gaussian_listing listing;
-    CHECK_OK(conic_gaussian_explain(context, scene, camera, options, NULL, pixel % WIDTH, pixel / WIDTH, &listing));
+    CHECK_OK(
+        conic_gaussian_explain(context, scene, camera, options, NULL, NULL, pixel % WIDTH, pixel / WIDTH, &listing));
     f->n[pixel] = 0;
     for (size_t k = 0; k < listing.n; k++)
       if (listing.entries[k].part == CONIC_PART_COMPOSITED) {

@@ -49,13 +49,13 @@ static void test_ranks(conic_context *context) {
   CHECK_OK(conic_image_allocate(context, 2, 1, CONIC_MATTE_PLANES, &image));
   for (int plane = CONIC_PLANE_MATTE_0; plane <= CONIC_PLANE_MATTE_2; plane++)
     memset(image.planes[plane], 0xff, 2 * 4 * sizeof(float));
-  conic_cryptomatte_rank(few, 9, &image, 1);
+  conic_cryptomatte_rank(few, NULL, 9, &image, 1);
   check_rank(&image, 1, 0, 60, 3.0f / 9.0f);
   check_rank(&image, 1, 1, 70, 2.0f / 9.0f);
   check_rank(&image, 1, 2, 50, 1.0f / 9.0f);
   for (int rank = 3; rank < 6; rank++)
     check_rank(&image, 1, rank, 0, 0.0f);
-  conic_cryptomatte_rank(many, 16, &image, 0);
+  conic_cryptomatte_rank(many, NULL, 16, &image, 0);
   for (int rank = 0; rank < 6; rank++)
     check_rank(&image, 0, rank, kept[rank], (float)(rank < 2 ? 3 : rank < 5 ? 2 : 1) / 16.0f);
   check_rank(&image, 1, 0, 60, 3.0f / 9.0f);
