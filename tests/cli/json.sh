@@ -85,6 +85,7 @@ declare -A wanted=(
   [judge-wrong]="verdict pixels.equal pixels.rounding pixels.explained pixels.wrong diagnosis explained_by worst
     profile? judged_pixels planes.rgba.max_abs? seconds.judge"
   [judge-splats-wrong]="verdict pixels.wrong method? explained_by.cutoff? worst"
+  [explain-among]="profile pixel surface.depth surface.weight counts.behind contributions"
   [explain-gaussians]="profile pixel planes.rgba planes.last bounds.rgb.low bounds.T.high end doubts doubt
     counts.composited contributions"
   [help]="version commands"
@@ -219,6 +220,8 @@ cat two.splat two.splat > copies.splat
 write judge-copies-wrong judge judge copies.splat --profile gsplat-1.6 --size 40x40 --picture two.exr
 write explain-sample explain explain one.ply --size 64x48 --pixel 30,20 --sample 3
 write explain-gaussians explain_gaussians explain two.splat --profile exact --size 40x40 --pixel 20,20
+printf 'v -9 -9 3\nv 9 -9 3\nv 0 12 3\nf 1 3 2\n' > wall.obj
+write explain-among explain_gaussians explain two.splat wall.obj --profile exact --size 40x40 --pixel 20,20
 write gradient gradient gradient two.splat --profile gsplat-1.6 --size 40x40 --weights two.exr
 run 0 gradient two.splat --profile gsplat-1.6 --size 40x40 --weights two.exr -o two-g.ply --quiet
 write judge-gradients judge_gradients judge two.splat --profile gsplat-1.6 --size 40x40 --weights two.exr \
