@@ -31,8 +31,7 @@ static int find_rotation(const char *from, const char *to, double rotation[3][3]
          0.0;
 }
 
-/* A unit quaternion w, x, y, z of a rotation. */
-static void find_quaternion(const double r[3][3], double q[4]) {
+void conic_gaussians_find_quaternion(const double r[3][3], double q[4]) {
   const double products[4][4] = {
       {1.0 + r[0][0] + r[1][1] + r[2][2], r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]},
       {r[2][1] - r[1][2], 1.0 + r[0][0] - r[1][1] - r[2][2], r[0][1] + r[1][0], r[2][0] + r[0][2]},
@@ -126,7 +125,7 @@ static void turn_block(void *data, size_t i_block) {
 void conic_gaussians_rotate(conic_context *context, conic_gaussians *gaussians, const double rotation[3][3]) {
   turner self = {.gaussians = gaussians, .rotation = rotation};
   double origin[3];
-  find_quaternion(rotation, self.quaternion);
+  conic_gaussians_find_quaternion(rotation, self.quaternion);
   self.is_flip = find_flips(rotation, self.flips);
   conic_harmonics_find_turn(rotation, self.harmonics);
   memcpy(origin, gaussians->origin, sizeof origin);

@@ -53,6 +53,9 @@ conic_status conic_gaussians_grow(conic_context *context, conic_gaussians *gauss
  * Harmonics of higher degrees are left out, and those that are not there 0. */
 void conic_gaussians_put(const conic_gaussians *from, conic_gaussians *to, size_t first);
 
+/* A unit quaternion w, x, y, z of a rotation. */
+void conic_gaussians_find_quaternion(const double rotation[3][3], double quaternion[4]);
+
 /* Turns a scene about the origin by a rotation, harmonics too. */
 void conic_gaussians_rotate(conic_context *context, conic_gaussians *gaussians, const double rotation[3][3]);
 

@@ -297,7 +297,7 @@ static void test_gltf(conic_context *context) {
   CHECK(unlink(path) == 0);
 }
 
-/* A node that stretches its Gaussians is refused; what is not known of them is told. */
+/* A node that mirrors its Gaussians is refused; what is not known of them is told. */
 static void test_gltf_told(conic_context *context) {
   static const char format[] =
       "{\"nodes\":[{\"mesh\":0,\"scale\":[%s]}],\"meshes\":[{\"primitives\":[{\"mode\":0,\"attributes\":{\"POSITION\":"
@@ -311,7 +311,7 @@ static void test_gltf_told(conic_context *context) {
                                          {"1,1,1", "sortingMethod", "none", "the sorting method none"},
                                          {"1,1,1", "colorSpace", "lin_rec709_display", NULL},
                                          {"1,1,1", "colorSpace", "acescg", "the colour space acescg"},
-                                         {"1,2,1", "kernel", "ellipse", NULL}};
+                                         {"1,-2,1", "kernel", "ellipse", NULL}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     conic_gaussians scene;
     char text[sizeof format + 64];
@@ -319,8 +319,8 @@ static void test_gltf_told(conic_context *context) {
     const char *path = files_write("a.gltf", text);
     files_warning[0] = 0;
     conic_status status = conic_gaussians_read(context, path, NULL, &scene);
-    if (cases[i][0][2] == '2')
-      files_check_failed("stretched", status, "a.gltf", "stretches", NULL);
+    if (cases[i][0][2] == '-')
+      files_check_failed("mirrored", status, "a.gltf", "mirrors", NULL);
     else
       CHECK(status == CONIC_OK && scene.count == 1);
     CHECK(cases[i][3] ? strstr(files_warning, cases[i][3]) != NULL : files_warning[0] == 0);
