@@ -3,13 +3,13 @@
 
 #include "cli/command.h"
 #include "cli/commands/build_steps.h"
-#include "cli/judge/suite_files.h"
+#include "cli/judge/khr_assets.h"
 #include "cli/judge/suite_planes.h"
 #include "cli/outputs.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 
-enum { MOST_CASES = 1024 };
+enum { MOST_CASES = 1024, MOST_ASSETS = 128 };
 
 typedef struct suite_case {
   const suite_scene *scene;
@@ -23,6 +23,10 @@ typedef struct conformance_job {
   const char *profile_list;
   unsigned profiles; /* as bits */
   int floats;        /* 0: fast, 1: strict */
+  int is_khr;        /* the Khronos pack, whose scenes these are */
+  suite_scene assets[MOST_ASSETS];
+  const suite_scene *scenes; /* that there are */
+  int n_scenes;
   int most_level;
   int n_cases;
   suite_case cases[MOST_CASES];
@@ -39,6 +43,8 @@ static const char *const float_names[] = {"fast", "strict", NULL};
 static conic_float_model model_of_job(const conformance_job *job) {
   conic_float_model model;
   conic_float_model_init(&model, job->floats ? CONIC_FLOATS_STRICT : CONIC_FLOATS_FAST);
+  if (job->is_khr) /* the nodes' matrices are steps, too */
+    model.setup_roundoff *= 4.0;
   return model;
 }
 
@@ -51,7 +57,7 @@ static void name_case(const suite_case *one, char name[SUITE_PATH_ROOM]) {
 
 /* The first level, which is looked at; a suite with all in both formats would be too large. */
 static int has_exr(const suite_scene *scene) {
-  return scene->recipe.n == 0 && (scene->level == 1 || scene->make_splats);
+  return scene->asset || (scene->recipe.n == 0 && (scene->level == 1 || scene->make_splats));
 }
 
 static int is_made(const conformance_job *job, const suite_scene *scene) {
@@ -147,7 +153,7 @@ static conic_status make_case(conformance_job *job, const suite_content *content
 }
 
 static conic_status make_suite_scene(conformance_job *job, int i_scene) {
-  const suite_scene *scene = &cli_suite_scenes[i_scene];
+  const suite_scene *scene = &job->scenes[i_scene];
   suite_content content;
   double start = cli_seconds();
   conic_status status = cli_suite_write_camera(job->files, scene);
@@ -193,16 +199,27 @@ static void describe_path(cli_json *json, const char *key, const char *folder, c
   cli_json_text(json, key, path);
 }
 
+static void describe_asset_path(cli_json *json, const khr_asset *asset) {
+  char path[SUITE_PATH_ROOM];
+  cli_khr_path(asset, path);
+  cli_json_text(json, "gltf", path);
+}
+
 static void describe_scene(cli_json *json, const conformance_job *job, int i_scene) {
-  const suite_scene *scene = &cli_suite_scenes[i_scene];
+  const suite_scene *scene = &job->scenes[i_scene];
   cli_json_object(json, NULL);
   cli_json_text(json, "name", scene->name);
   cli_json_count(json, "level", (uint64_t)scene->level);
   cli_json_text(json, "about", scene->about);
+  if (scene->asset)
+    cli_json_text(json, "clause", scene->asset->clause);
   cli_json_count(json, "records", job->about[i_scene].n_records);
   cli_json_count(json, "sh_degree", (uint64_t)job->about[i_scene].sh_degree);
   cli_json_object(json, "files");
-  describe_path(json, "ply", "scenes", scene->name, ".ply");
+  if (scene->asset)
+    describe_asset_path(json, scene->asset);
+  else
+    describe_path(json, "ply", "scenes", scene->name, ".ply");
   if (scene->formats & SUITE_SPZ)
     describe_path(json, "spz", "scenes", scene->name, ".spz");
   if (scene->formats & SUITE_GLB)
@@ -245,14 +262,29 @@ static void describe_cases(cli_json *json, const conformance_job *job) {
 
 static void describe_levels(cli_json *json, const conformance_job *job) {
   cli_json_array(json, "levels");
-  for (int level = 1; level <= SUITE_LEVELS; level++) {
+  for (int level = 1; level <= (job->is_khr ? KHR_LEVELS : SUITE_LEVELS); level++) {
     uint64_t n = 0;
     for (int i = 0; i < job->n_cases; i++)
       n += job->cases[i].scene->level == level;
     cli_json_object(json, NULL);
     cli_json_count(json, "level", (uint64_t)level);
-    cli_json_text(json, "about", cli_suite_level_about(level));
+    cli_json_text(json, "about", job->is_khr ? cli_khr_level_about(level) : cli_suite_level_about(level));
     cli_json_count(json, "cases", n);
+    cli_json_close(json);
+  }
+  cli_json_close(json);
+}
+
+/* The assets that no renderer may draw. */
+static void describe_refused(cli_json *json) {
+  cli_json_array(json, "refused");
+  for (int i = 0; i < cli_n_khr_assets; i++) {
+    const khr_asset *asset = &cli_khr_assets[i];
+    if (asset->level)
+      continue;
+    cli_json_object(json, NULL);
+    cli_json_texts(json, NULL, {"name", asset->name}, {"about", asset->about}, {"clause", asset->clause});
+    describe_asset_path(json, asset);
     cli_json_close(json);
   }
   cli_json_close(json);
@@ -267,11 +299,13 @@ static void describe_suite(cli_json *json, const conformance_job *job) {
   describe_words(json, "ranges", cli_suite_range_names, SUITE_RANGES);
   describe_levels(json, job);
   cli_json_array(json, "scenes");
-  for (int i = 0; i < cli_n_suite_scenes; i++)
-    if (is_made(job, &cli_suite_scenes[i]))
+  for (int i = 0; i < job->n_scenes; i++)
+    if (is_made(job, &job->scenes[i]))
       describe_scene(json, job, i);
   cli_json_close(json);
   describe_cases(json, job);
+  if (job->is_khr)
+    describe_refused(json);
   cli_json_array(json, "files");
   for (int i = 0; i < job->files->n; i++) {
     cli_json_object(json, NULL);
@@ -301,7 +335,7 @@ static conic_status write_suite_manifest(const conformance_job *job) {
 
 /* A line for each case, for runners that do not read JSON. */
 static conic_status write_case_list(const conformance_job *job) {
-  char name[SUITE_PATH_ROOM], line[8 * SUITE_PATH_ROOM];
+  char name[SUITE_PATH_ROOM], path[SUITE_PATH_ROOM], line[8 * SUITE_PATH_ROOM];
   size_t n = 0, room = (size_t)job->n_cases * sizeof line + 1;
   char *text = conic_memory_allocate(job->files->context, room, 1);
   if (!text)
@@ -310,9 +344,12 @@ static conic_status write_case_list(const conformance_job *job) {
   for (int i = 0; i < job->n_cases; i++) {
     const suite_scene *scene = job->cases[i].scene;
     name_case(&job->cases[i], name);
-    n += (size_t)snprintf(text + n, room - n, "%s\tscenes/%s.ply\tcameras/%s.json\t%s\t%.9g,%.9g,%.9g\n", name,
-                          scene->name, scene->name, cli_suite_profile_name(job->cases[i].profile),
-                          (double)scene->background[0], (double)scene->background[1], (double)scene->background[2]);
+    snprintf(path, sizeof path, "scenes/%s.ply", scene->name);
+    if (scene->asset)
+      cli_khr_path(scene->asset, path);
+    n += (size_t)snprintf(text + n, room - n, "%s\t%s\tcameras/%s.json\t%s\t%.9g,%.9g,%.9g\n", name, path, scene->name,
+                          cli_suite_profile_name(job->cases[i].profile), (double)scene->background[0],
+                          (double)scene->background[1], (double)scene->background[2]);
   }
   conic_status status = cli_suite_write_text(job->files, "cases.tsv", text);
   conic_memory_release(job->files->context, text);
@@ -341,17 +378,38 @@ static int check_suite_folder(const char *folder) {
 }
 
 /* Removes the old manifest first: without one the folder is no suite until the new one is written. */
-static conic_status make_suite_folders(suite_files *files) {
+static conic_status make_suite_folders(suite_files *files, int is_khr) {
   char full[4096];
   conic_status status = cli_suite_make_folder(files, "");
   if (status == CONIC_OK)
     status = cli_suite_join(files->context, files->folder, "manifest.json", full, sizeof full);
   if (status == CONIC_OK && !conic_disk_remove(full) && errno != ENOENT)
     status = conic_fail(files->context, CONIC_ERROR_IO, "%s: cannot write: %s", full, strerror(errno));
-  static const char *const folders[] = {"scenes", "cameras", "expected"};
-  for (int i = 0; status == CONIC_OK && i < 3; i++)
+  static const char *const folders[] = {"scenes", "cameras", "expected", "broken"};
+  for (int i = 0; status == CONIC_OK && i < (is_khr ? 4 : 3); i++)
     status = cli_suite_make_folder(files, folders[i]);
   return status;
+}
+
+static conic_status write_refused(suite_files *files) {
+  conic_status status = CONIC_OK;
+  for (int i = 0; status == CONIC_OK && i < cli_n_khr_assets; i++) {
+    conic_gaussians seen;
+    if (cli_khr_assets[i].level)
+      continue;
+    status = cli_khr_write(files, &cli_khr_assets[i], &seen);
+    conic_gaussians_release(files->context, &seen);
+  }
+  return status;
+}
+
+/* The scenes of the pack are the assets that are drawn. */
+static void choose_scenes(conformance_job *job) {
+  job->scenes = job->is_khr ? job->assets : cli_suite_scenes;
+  job->n_scenes = job->is_khr ? 0 : cli_n_suite_scenes;
+  for (int i = 0; job->is_khr && i < cli_n_khr_assets && job->n_scenes < MOST_ASSETS; i++)
+    if (cli_khr_assets[i].level)
+      cli_khr_scene(&cli_khr_assets[i], &job->assets[job->n_scenes++]);
 }
 
 static int make_suite(void *cookie) {
@@ -361,14 +419,17 @@ static int make_suite(void *cookie) {
     return CLI_RESOURCE;
   job->files->context = job->base.session->context;
   job->files->folder = job->base.output;
-  conic_status status = make_suite_folders(job->files);
-  for (int i = 0; status == CONIC_OK && i < cli_n_suite_scenes; i++) {
-    cli_session_part(job->base.session, "scenes", i + 1, cli_n_suite_scenes);
-    if (is_made(job, &cli_suite_scenes[i]))
+  conic_status status = make_suite_folders(job->files, job->is_khr);
+  choose_scenes(job);
+  for (int i = 0; status == CONIC_OK && i < job->n_scenes; i++) {
+    cli_session_part(job->base.session, "scenes", i + 1, job->n_scenes);
+    if (is_made(job, &job->scenes[i]))
       status = make_suite_scene(job, i);
   }
+  if (status == CONIC_OK && job->is_khr)
+    status = write_refused(job->files);
   if (status == CONIC_OK)
-    status = cli_suite_write_text(job->files, "README.md", cli_suite_readme);
+    status = cli_suite_write_text(job->files, "README.md", job->is_khr ? cli_khr_readme : cli_suite_readme);
   if (status == CONIC_OK)
     status = write_case_list(job);
   if (status == CONIC_OK)
@@ -409,7 +470,9 @@ static int run_conformance(cli_session *session, int argc, char **argv) {
   const char *positional[argc];
   int n_positional;
   const cli_option options[] = {
-      {"profile", CLI_TEXT, &job.profile_list, "NAMES", "only these profiles, with commas between [all]"},
+      {"khr", CLI_FLAG, &job.is_khr, NULL, "the pack for KHR_gaussian_splatting: glTF files, valid and broken"},
+      {"profile", CLI_TEXT, &job.profile_list, "NAMES", "only these profiles, with commas between [all]",
+       .acts.with = "!khr"},
       {"level", CLI_INT, &job.most_level, "N", "only cases up to this level [7]", 1, SUITE_LEVELS},
       {"floats", CLI_CHOICE, &job.floats, "KIND",
        "what renderers may round: fast: as a GPU's fast mathematics; strict: e^x to 2 ulp [fast]",
@@ -432,9 +495,10 @@ static int run_conformance(cli_session *session, int argc, char **argv) {
 const cli_command cli_conformance = {
     .name = "conformance",
     .summary = "writes a suite of cases by which any Gaussian renderer can be judged",
-    .usage = "conic conformance OUT/ [--profile NAME[,NAME]] [--level N] [--floats fast|strict]",
+    .usage = "conic conformance OUT/ [--khr | --profile NAME[,NAME]] [--level N] [--floats fast|strict]",
     .run = run_conformance,
     .description = "Writes small scenes, their cameras, and what each pixel may be, into a folder. Draw them with your "
                    "renderer, and let conic judge --suite compare.",
-    .examples = {{"write the cases of one profile", "conic conformance suite/ --profile gsplat-1.6"}},
+    .examples = {{"write the cases of one profile", "conic conformance suite/ --profile gsplat-1.6"},
+                 {"write the pack for Khronos' glTF extension", "conic conformance --khr pack/"}},
 };

@@ -1,4 +1,4 @@
-#include "cli/judge/suite_files.h"
+#include "cli/judge/khr_assets.h"
 
 #include "core/files/disk.h"
 #include "core/files/file.h"
@@ -197,9 +197,21 @@ static conic_status write_splat_scene(suite_files *suite, const suite_scene *sce
   return status == CONIC_OK ? conic_model_read(suite->context, full, NULL, &content->model) : status;
 }
 
+/* Of conic's own writer, too. */
+static conic_status write_asset(suite_files *suite, const khr_asset *asset, conic_gaussians *seen) {
+  char path[SUITE_PATH_ROOM];
+  conic_status status = cli_khr_write(suite, asset, seen);
+  cli_khr_path(asset, path);
+  if (status == CONIC_OK && asset->flags & KHR_BY_CONIC)
+    status = write_of_kind(suite, path, seen, asset->flags & KHR_GLB ? CONIC_GAUSSIANS_GLB : CONIC_GAUSSIANS_GLTF);
+  return status;
+}
+
 conic_status cli_suite_write_scene(suite_files *suite, const suite_scene *scene, suite_content *content) {
   char path[SUITE_PATH_ROOM], full[4096];
   memset(content, 0, sizeof *content);
+  if (scene->asset)
+    return write_asset(suite, scene->asset, &content->gaussians);
   snprintf(path, sizeof path, "scenes/%s.ply", scene->name);
   conic_status status = cli_suite_join(suite->context, suite->folder, path, full, sizeof full);
   if (status == CONIC_OK)

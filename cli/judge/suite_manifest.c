@@ -60,6 +60,7 @@ typedef struct manifest_member {
   size_t at, room;   /* in the entry */
   double most;       /* of a number */
   const char *inner; /* the key of an inner path */
+  const char *other; /* null; or another such key */
 } manifest_member;
 
 static int is_key(const char *key, const char *name) {
@@ -76,8 +77,9 @@ static void read_member(conic_json *json, const manifest_member *member, void *e
     return;
   }
   if (member->kind == INNER_PATH) {
-    const manifest_member inner = {member->inner, PATH, member->at, member->room};
-    read_object(json, &inner, 1, entry);
+    const manifest_member inner[2] = {{member->inner, PATH, member->at, member->room},
+                                      {member->other, PATH, member->at, member->room}};
+    read_object(json, inner, member->other ? 2 : 1, entry);
     return;
   }
   if (conic_json_number(json, &value) != CONIC_OK)
@@ -107,19 +109,19 @@ static void read_object(conic_json *json, const manifest_member *members, int n,
 #define AT(type, member) offsetof(type, member), sizeof((type *)NULL)->member
 
 static void read_scene_entry(conic_json *json, manifest_scene *scene) {
-  static const manifest_member members[] = {{"name", WORD, AT(manifest_scene, name)},
-                                            {"files", INNER_PATH, AT(manifest_scene, ply), .inner = "ply"},
-                                            {"camera", INNER_PATH, AT(manifest_scene, camera), .inner = "conic"},
-                                            {"width", NUMBER, AT(manifest_scene, width), 65535.0},
-                                            {"height", NUMBER, AT(manifest_scene, height), 65535.0},
-                                            {"stage", WORD, AT(manifest_scene, stage)},
-                                            {"step", NUMBER, AT(manifest_scene, step), 65535.0}};
+  static const manifest_member members[] = {
+      {"name", WORD, AT(manifest_scene, name)},
+      {"files", INNER_PATH, AT(manifest_scene, ply), .inner = "ply", .other = "gltf"},
+      {"camera", INNER_PATH, AT(manifest_scene, camera), .inner = "conic"},
+      {"width", NUMBER, AT(manifest_scene, width), 65535.0},
+      {"height", NUMBER, AT(manifest_scene, height), 65535.0},
+      {"stage", WORD, AT(manifest_scene, stage)},
+      {"step", NUMBER, AT(manifest_scene, step), 65535.0}};
   read_object(json, members, 7, scene);
   if (!scene->name[0] || !scene->ply[0] || !scene->camera[0] || !scene->width || !scene->height ||
       scene->step / 2 >= scene->width || scene->step / 2 >= scene->height)
-    conic_json_wrong(
-        json,
-        "a scene lacks its name, its files.ply, its camera.conic, its width or its height, or its step is larger");
+    conic_json_wrong(json, "a scene lacks its name, its files.ply or files.gltf, its camera.conic, its width or its "
+                           "height, or its step is larger");
 }
 
 static void read_case_entry(conic_json *json, suite_entry *one) {

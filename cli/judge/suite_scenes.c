@@ -554,7 +554,7 @@ static int draws(const suite_scene *scene, int profile) {
 }
 
 unsigned cli_suite_profiles(const suite_scene *scene) {
-  unsigned profiles = 0;
+  unsigned profiles = scene->asset ? 1u << CONIC_PROFILE_KHR_2026 : 0;
   for (int p = 0; p < SUITE_PROFILES; p++)
     profiles |= draws(scene, p) ? 1u << p : 0;
   return profiles;

@@ -39,6 +39,8 @@ typedef struct suite_recipe {
   unsigned bands;                      /* bits 1 << degree, besides degree 0 */
 } suite_recipe;
 
+struct khr_asset;
+
 typedef struct suite_scene {
   const char *name, *about;
   int level; /* 1 to SUITE_LEVELS */
@@ -54,6 +56,7 @@ typedef struct suite_scene {
   suite_recipe recipe;        /* n 0: it is made by the next */
   conic_status (*make)(conic_context *context, conic_gaussians *gaussians);  /* null: by the recipe */
   conic_status (*make_splats)(conic_context *context, conic_splats *splats); /* for the profile surface; else null */
+  const struct khr_asset *asset;                                             /* of the Khronos pack; else null */
 } suite_scene;
 
 extern const suite_scene cli_suite_scenes[];

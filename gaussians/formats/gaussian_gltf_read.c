@@ -101,7 +101,7 @@ static conic_status check_type(const gaussian_gltf_reader *reader, double number
   const double code = accessor->component - CONIC_GLTF_INT8;
   if (strcmp(accessor->type, type) != 0 || !conic_gltf_is_index(code, 7) ||
       !((accessor->is_normalized ? normalized : plain) >> (unsigned)code & 1))
-    return conic_gltf_wrong(&reader->gltf, "the %s of its Gaussians is of a type that it may not have", name);
+    return conic_gltf_wrong(&reader->gltf, "the %s of its Gaussians: the text admits no such type", name);
   return CONIC_OK;
 }
 
