@@ -108,7 +108,7 @@ static void begin_view(khr_writer *w, size_t n_bytes, size_t stride) {
   w->n_bytes = (w->n_bytes + 3) / 4 * 4;
   add(&w->views, "%s{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu", w->n_views++ ? "," : "", w->n_bytes, n_bytes);
   if (stride)
-    add(&w->views, ",\"byteStride\":%zu", stride);
+    add(&w->views, ",\"byteStride\":%zu,\"target\":34962", stride);
   add(&w->views, "}");
 }
 
