@@ -11,7 +11,7 @@ const char cli_khr_readme[] =
     "\n"
     "1. Draw every case. `cases.tsv` has a line a case: its name, the file, the camera, the profile and the "
     "background\n"
-    "   (R,G,B). Each file has the same camera, too, as its only one; the picture has 40 x 30 pixels. `manifest.json`\n"
+    "   (R,G,B). All files but `written-…` have the same camera, too; the picture has 40 x 30 pixels. `manifest.json`\n"
     "   says the same, and which `clause`, a heading of the extension's text, each file is about.\n"
     "2. Write each picture into one folder, as `NAME.npy`, `NAME.exr`, `NAME.pfm` or `NAME.png`.\n"
     "3. Run `conic judge --suite THIS --pictures FOLDER`. Its exit code is 0 if every case is right. `--junit FILE`\n"

@@ -1336,6 +1336,7 @@ def conformance(
     *,
     progress: Any = None,
     threads: Optional[int] = None,
+    khr: Optional[bool] = None,
     profile: Optional[PathLike] = None,
     level: Optional[int] = None,
     floats: Optional[Literal["fast", "strict"]] = None,
@@ -1344,6 +1345,7 @@ def conformance(
 
     Options:
 
+    khr: the pack for KHR_gaussian_splatting: glTF files, valid and broken
     profile: only these profiles, with commas between [all]
     level: only cases up to this level [7]
     floats: what renderers may round: fast: as a GPU's fast mathematics; strict: e^x to 2 ulp [fast]

@@ -55,7 +55,7 @@ CASES = {
     "explain": {"--pixel": "3,4", "--splat": "3", "--dump-projection": "d.csv", "--sample": "1", "--aperture": "0.2",
                 "--focus": "1", "--shutter": "0:0.5", "--motion": "motion.json", "--turntable": "4", "--frames": "2"},
     "gradient": {"-o": "more.ply", "--weights": "other.exr", "--raw": None, "--floats": "fast", "--no-doubts": None},
-    "conformance": {"--profile": "exact", "--level": "1", "--floats": "strict"},
+    "conformance": {"--khr": None, "--profile": "exact", "--level": "1", "--floats": "strict"},
     "chart": {"-o": "more", "--quick": None, "--over": "samples", "--time": "1", "--beside": "x=1:picture.exr",
               "--truth": "2", "--pixels": "5", "--accumulate": "2"},
     "bench": {"--allow-outside": None, "--scenes": "sphere-1k", "--methods": "ray", "--profiles": "exact", "--isa": "scalar", "--threads": "1",
