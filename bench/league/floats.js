@@ -1,7 +1,7 @@
-// A page's WebGL2 canvas in floats: what would go to its 8 bits goes to a framebuffer of 32-bit floats. Frames come a
-// tenth of a second apart, until leagueStopped; leagueFloats() then returns the pixels.
+// A page's WebGL2 canvas in floats: what would go to its 8 bits goes to a framebuffer of 32-bit floats, and `mediump`,
+// which some drivers take as 16 bits, is `highp`. Frames come a tenth of a second apart. leagueFloats() returns the pixels.
 (() => {
-  window.requestAnimationFrame = f => setTimeout(() => { if (!window.leagueStopped) f(performance.now()); }, 100);
+  window.requestAnimationFrame = f => setTimeout(() => f(performance.now()), 100);
   window.cancelAnimationFrame = id => clearTimeout(id);
   const get = HTMLCanvasElement.prototype.getContext;
   HTMLCanvasElement.prototype.getContext = function (kind, options) {
@@ -27,6 +27,8 @@
     };
     own.bound = null;
     gl.bindFramebuffer = (target, frame) => { own.bound = frame; bind(target, frame || ready()); };
+    const source = gl.shaderSource.bind(gl);
+    gl.shaderSource = (shader, text) => source(shader, text.replace(/\bmediump\b/g, 'highp'));
     gl.drawBuffers = list => draws(!own.bound ? list.map(x => x === gl.BACK ? gl.COLOR_ATTACHMENT0 : x) : list);
     for (const name of ['clear', 'drawArrays', 'drawElements', 'drawArraysInstanced', 'drawElementsInstanced', 'drawRangeElements', 'viewport']) {
       const call = gl[name].bind(gl);

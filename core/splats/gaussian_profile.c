@@ -1,6 +1,5 @@
 #include "core/splats/gaussian_profile.h"
 
-
 #define LEAST_ALPHA (1.0 / 255.0)
 #define LIKE_INRIA                                                                                                     \
   .coverage = CONIC_COVERAGE_TILES, .near_z = 0.2, .is_beyond_near = 1, .alpha_most = 0.99,                            \
@@ -35,12 +34,11 @@ static const conic_profile_row rows[CONIC_N_GAUSSIAN_PROFILES] = {
     [CONIC_PROFILE_BRUSH_1] = {"brush-1", LIKE_GSPLAT, .alpha_most = 0.999, .compensation_least = -1.0},
     [CONIC_PROFILE_SPLAT_2023] = {"splat-2023", ON_THE_WEB, .near_z = 40.0 / 399.8, .is_beyond_near = 1, .fade_z = 0.2,
                                   .compensation_least = -1.0, .clip = 1.2, .axis_most = 1024.0 / ROOT_OF_2,
-                                  .color_most = 1.0, .has_plain_color = 1, .takes_rotation_as_is = 2,
-                                  .covariance_unit = 0x1p-10},
+                                  .color_most = 1.0, .has_plain_color = 1, .takes_rotation_as_is = 2},
     [CONIC_PROFILE_PLAYCANVAS_2] = {"playcanvas-2", ON_THE_WEB, .alpha_least = LEAST_ALPHA, .dilation = 0.075,
                                     .compensation_least = -1.0, .axis_least = 0.025, .axis_most = 1024.0 / ROOT_OF_8,
                                     .axis_share = 1.0 / ROOT_OF_8, .axis_seen = 1.0 / ROOT_OF_8,
-                                    .fall_end = 0.01831563888873418, .covariance_unit = 0x3p-10, .color_unit = 0x1p-9},
+                                    .fall_end = 0.01831563888873418},
     [CONIC_PROFILE_SPARK_2] = {"spark-2", ON_THE_WEB, .near_z = 0.1, .alpha_least = 0.5 / 255.0, .dilation = 0.3,
                                .clip = 1.4, .axis_most = 512.0 / ROOT_OF_8, .orders_by_distance = 1},
     [CONIC_PROFILE_GS3D_0_4] = {"gs3d-0.4", ON_THE_WEB, .near_z = 0.1, .dilation = 0.3, .compensation_least = -1.0,

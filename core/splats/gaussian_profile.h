@@ -46,8 +46,6 @@ typedef struct conic_profile_row {
   double fade_z;             /* nearer, opacity and colour fade, linearly in 1/z, to nothing at near_z; 0: not */
   double color_most;         /* the greatest colour; 0: there is none */
   int has_plain_color;       /* of degree 0 alone */
-  double covariance_unit;    /* by how much of itself storing may change a number of the covariance in space */
-  double color_unit;         /* likewise a colour, and its harmonics by that share of the largest of them */
   int takes_rotation_as_is;  /* 0: quaternions are normalised; 1: but for those of length 1 up to roundings; 2: none is;
                                 3: likewise, and rays meet the inverse of their matrix, not its transpose */
   int takes_middle;          /* the middle of the picture in place of the principal point */

@@ -124,7 +124,7 @@ static void bound_offset(const oracle_doubting *d, double unit, oracle_uncertain
 }
 
 /* What another program's order of forming the covariance adds: xx, xy, yy. */
-static void loosen_covariance(const bounded_frame *f, double stored, const double gain[2], const double slope[2],
+static void loosen_covariance(const bounded_frame *f, const double gain[2], const double slope[2],
                               bounded covariance[3]) {
   double squares[3] = {0.0, 0.0, 0.0};
   for (int k = 0; k < 3; k++) {
@@ -135,7 +135,7 @@ static void loosen_covariance(const bounded_frame *f, double stored, const doubl
     squares[2] += y * y;
   }
   for (int k = 0; k < 3; k++)
-    covariance[k].off += (n_covariance_roundings * f->unit + stored) * squares[k];
+    covariance[k].off += n_covariance_roundings * f->unit * squares[k];
 }
 
 static bounded determinant_in_float(const bounded c[3], double unit) {
@@ -297,7 +297,7 @@ static int bound_ellipse(const oracle_doubting *d, const bounded_frame *f, oracl
   bounded bare = bounded_dot(area, area, unit), trace = bounded_add(c[0], c[2], unit);
   bounded wide = bounded_add(bounded_add(bare, bounded_scale(h, trace, unit), unit), bounded_of(h * h), unit);
   if (d->model->is_setup_in_float) {
-    loosen_covariance(f, rules->covariance_unit, gain, slope, c);
+    loosen_covariance(f, gain, slope, c);
     bare.off += determinant_in_float(c, unit).off;
   }
   c[0] = bounded_add(c[0], bounded_of(h), unit);
@@ -545,8 +545,7 @@ int conic_oracle_uncertain_color(const oracle_doubting *d, oracle_uncertain *g) 
   const size_t n = (size_t)(degree + 1) * (size_t)(degree + 1), i = g->index;
   const size_t n_stored = (size_t)(set->sh_degree + 1) * (size_t)(set->sh_degree + 1);
   const double most = d->view->rules->color_most > 0.0 ? d->view->rules->color_most : INFINITY;
-  double direction[3], y[(CONIC_MAX_SH_DEGREE + 1) * (CONIC_MAX_SH_DEGREE + 1)], length, far = 0.0, greatest = 0.0;
-  const double stored = d->model->is_setup_in_float ? d->view->rules->color_unit : 0.0;
+  double direction[3], y[(CONIC_MAX_SH_DEGREE + 1) * (CONIC_MAX_SH_DEGREE + 1)], length, far = 0.0;
   double sum[3] = {0.5, 0.5, 0.5}, size[3] = {0.5, 0.5, 0.5}, turned[3] = {0.0, 0.0, 0.0};
   for (int axis = 0; axis < 3; axis++) {
     double mean = set->origin[axis] + (double)set->position[axis][i];
@@ -564,14 +563,12 @@ int conic_oracle_uncertain_color(const oracle_doubting *d, oracle_uncertain *g) 
       double coefficient = sh_number(set, (i * n_stored + k) * 3 + c);
       sum[c] += y[k] * coefficient;
       size[c] += fabs(y[k] * coefficient);
-      greatest = oracle_max(greatest, fabs(coefficient));
       turned[c] += 2.0 * off * sqrt(l * (l + 1) * (2 * l + 1) / 12.566) * fabs(coefficient);
       turned[c] += 8.0 * d->model->setup_roundoff * sqrt((2 * l + 1) / 12.566) * fabs(coefficient);
     }
   }
   for (int c = 0; c < 3; c++) {
-    g->color[c] = (bounded){sum[c], turned[c] + ((double)n + 3.0) * ORACLE_FLOAT_UNIT * size[c] +
-                                        stored * (size[c] + (n > 1 ? (double)n * greatest : 0.0))};
+    g->color[c] = (bounded){sum[c], turned[c] + ((double)n + 3.0) * ORACLE_FLOAT_UNIT * size[c]};
     if (!bounded_is_finite(g->color[c]))
       return 0;
     g->color[c] = bounded_within(g->color[c], 0.0, most);
