@@ -1,6 +1,16 @@
 // A page's WebGL2 canvas in floats: what would go to its 8 bits goes to a framebuffer of 32-bit floats, and `mediump`,
-// which some drivers take as 16 bits, is `highp`. Frames come a tenth of a second apart. leagueFloats() returns the pixels.
+// which some drivers take as 16 bits, is `highp`. Frames come a tenth of a second apart. leagueFloats() returns the pixels;
+// leagueOrder is how the page's worker last sorted the Gaussians, from the back to the front.
 (() => {
+  window.Worker = class extends Worker {
+    constructor(...args) {
+      super(...args);
+      this.addEventListener('message', e => {
+        const order = e.data && (e.data.order || e.data.sortedIndexes);
+        if (order) window.leagueOrder = Array.from(new Uint32Array(order));
+      });
+    }
+  };
   window.requestAnimationFrame = f => setTimeout(() => f(performance.now()), 100);
   window.cancelAnimationFrame = id => clearTimeout(id);
   const get = HTMLCanvasElement.prototype.getContext;

@@ -20,7 +20,7 @@ C0 = F(0.28209479177387814)
 
 
 def read(path):
-    """Means, linear scales, quaternions w x y z as they are, linear opacities, harmonics (by Gaussian, number, channel)."""
+    """Means, linear scales, quaternions w x y z as they are, linear opacities (in double), harmonics (by Gaussian, number, channel)."""
     if str(path).endswith(".splat"):
         data = np.fromfile(path, [("mean", "<f4", 3), ("scale", "<f4", 3), ("rgba", "u1", 4), ("rotation", "u1", 4)])
         rgba = data["rgba"] / F(255)
@@ -37,7 +37,7 @@ def read(path):
     return {"mean": np.stack([columns[c] for c in "xyz"], 1), "sh": sh,
             "scale": np.exp(np.stack([columns[f"scale_{k}"] for k in range(3)], 1).astype(float)).astype(F),
             "rotation": np.stack([columns[f"rot_{k}"] for k in range(4)], 1),
-            "opacity": (1 / (1 + np.exp(-columns["opacity"].astype(float)))).astype(F)}
+            "opacity": 1 / (1 + np.exp(-columns["opacity"].astype(float)))}
 
 
 def write(path, scene):
@@ -140,9 +140,14 @@ def splat(scene, eye):
 
 
 def gs3d(scene, eye):
-    """GaussianSplats3D, SplatMesh.js and INRIAV1PlyParser.js: colours and opacities of 8 bits, cut off."""
+    """GaussianSplats3D, INRIAV1PlyParser.js:130-152: colours and opacities of 8 bits, cut off; SplatMesh.js:939-943: the
+    last Gaussian of a scene keeps the first of its six covariances and loses the others."""
+    sigma = covariances(scene, unit(scene["rotation"]))[-1]
+    scene["scale"][-1] = np.sqrt(sigma[0, 0]), 0, 0
+    scene["rotation"] = unit(scene["rotation"])
+    scene["rotation"][-1] = 1, 0, 0, 0
     scene["color"] = np.floor(np.clip((scene["sh"][:, 0].astype(float) * 0.28209479177387814 + 0.5) * 255, 0, 255)).astype(F) / F(255)
-    scene["opacity"] = np.floor(np.clip(scene["opacity"].astype(float) * 255, 0, 255)).astype(F) / F(255)
+    scene["opacity"] = np.floor(np.clip(scene["opacity"] * 255, 0, 255)).astype(F) / F(255)
 
 
 def playcanvas(scene, eye):
