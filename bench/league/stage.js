@@ -16,5 +16,5 @@ export function stage() {
   for (const [r, axis] of ['x', 'y', 'z'].entries())
     camera.position[axis] = -(m[0][r] * m[0][3] + m[1][r] * m[1][3] + m[2][r] * m[2][3]);
   camera.updateMatrixWorld();
-  return { renderer, camera, scene: at.get('scene'), three: THREE };
+  return { renderer, camera, scene: at.get('scene'), world: new THREE.Scene() };
 }
