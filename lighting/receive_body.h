@@ -1,6 +1,7 @@
 /* The receiving of lighting/light_map.h in plain C, which compilers put in lanes. */
 #include <math.h>
 
+#include "core/lanes/lanes.h"
 #include "lighting/light_map.h"
 
 /* A receiver as the map sees it. */
@@ -13,8 +14,8 @@ typedef struct received {
 
 /* How much of the light of one texel's ray reaches the plane of the receiver. The depths are compared where that ray
  * meets the plane. So slopes do not hide themselves, and need no tolerance that would let light through at contacts. */
-static inline float ray_reaches_plane(const conic_light_map *map, const received *r, float column, float row,
-                                      int has_through) {
+CONIC_INLINE float ray_reaches_plane(const conic_light_map *map, const received *r, float column, float row,
+                                     int has_through) {
   float x = column > 0.0f ? column : 0.0f, y = row > 0.0f ? row : 0.0f;
   float last_x = (float)(map->width - 1), last_y = (float)(map->height - 1);
   x = x < last_x ? x : last_x;
@@ -30,11 +31,11 @@ static inline float ray_reaches_plane(const conic_light_map *map, const received
   return is_nearer ? 0.0f : through;
 }
 
-static inline float nearest_texel(const conic_light_map *map, const received *r, int has_through) {
+CONIC_INLINE float nearest_texel(const conic_light_map *map, const received *r, int has_through) {
   return ray_reaches_plane(map, r, (float)(int)r->column, (float)(int)r->row, has_through);
 }
 
-static inline float four_texels(const conic_light_map *map, const received *r, int has_through) {
+CONIC_INLINE float four_texels(const conic_light_map *map, const received *r, int has_through) {
   float x = r->column + 0.5f, y = r->row + 0.5f; /* at least 0.5, so that cutting off is rounding down */
   float left = (float)(int)x - 1.0f, top = (float)(int)y - 1.0f;
   float right_part = x - (left + 1.0f), bottom_part = y - (top + 1.0f);
@@ -45,19 +46,19 @@ static inline float four_texels(const conic_light_map *map, const received *r, i
   return above * (1.0f - bottom_part) + below * bottom_part;
 }
 
-static inline float clamp_to_map(float place, int size) {
+CONIC_INLINE float clamp_to_map(float place, int size) {
   float last = (float)size;
   place = place > 0.0f ? place : 0.0f;
   return place < last ? place : last;
 }
 
 /* How far, along a ray, the map's depth may be off its surface; `slope` is the tangent of the slope. */
-static inline float bias_of(const conic_light_map *map, float texel, float slope) {
+CONIC_INLINE float bias_of(const conic_light_map *map, float texel, float slope) {
   return (map->flat_epsilon + texel * CONIC_LIGHT_MAP_FLAT) + (map->epsilon + texel) * (CONIC_LIGHT_MAP_SLOPE * slope);
 }
 
 /* How the receiver faces the parallel rays of a map, and its tolerance along them. */
-static inline float face_sun(const conic_light_map *map, received *r) {
+CONIC_INLINE float face_sun(const conic_light_map *map, received *r) {
   float cosine = -r->n[2], flat = cosine > CONIC_LIGHT_MAP_GRAZING ? cosine : CONIC_LIGHT_MAP_GRAZING;
   float slope = sqrtf(r->n[0] * r->n[0] + r->n[1] * r->n[1]) / flat;
   r->bias = bias_of(map, r->texel, slope);
@@ -65,7 +66,7 @@ static inline float face_sun(const conic_light_map *map, received *r) {
 }
 
 /* The same for the ray to `at`, which is longer than its z. */
-static inline float face_lamp(const conic_light_map *map, const float at[3], received *r) {
+CONIC_INLINE float face_lamp(const conic_light_map *map, const float at[3], received *r) {
   float distance = sqrtf((at[0] * at[0] + at[1] * at[1]) + at[2] * at[2]);
   float cosine = -((r->n[0] * at[0] + r->n[1] * at[1]) + r->n[2] * at[2]) / distance;
   float flat = cosine > CONIC_LIGHT_MAP_GRAZING ? cosine : CONIC_LIGHT_MAP_GRAZING;
@@ -74,8 +75,8 @@ static inline float face_lamp(const conic_light_map *map, const float at[3], rec
   return cosine;
 }
 
-static inline void receive_one(const conic_light_map *map, const conic_receivers *from, size_t i, int is_smooth,
-                               int is_lamp, int has_through, float *visible, float *facing) {
+CONIC_INLINE void receive_one(const conic_light_map *map, const conic_receivers *from, size_t i, int is_smooth,
+                              int is_lamp, int has_through, float *visible, float *facing) {
   float p[3] = {from->position[0][i], from->position[1][i], from->position[2][i]};
   float n[3] = {from->normal[0][i], from->normal[1][i], from->normal[2][i]};
   float at[3];
