@@ -47,7 +47,7 @@ typedef struct conic_shot_work {
   conic_shared_units units;        /* that it shares */
   const conic_sums_keeper *keeper; /* null: nobody keeps or watches */
   double seconds;                  /* above 0: no sample is begun after so many */
-  unsigned planes;                 /* of the picture */
+  unsigned planes;                 /* of the picture; of these, samples are summed up */
   double focus_depth;              /* once it is found */
   double light_ms;
   conic_accumulation_facts samples;

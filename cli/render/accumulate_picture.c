@@ -174,6 +174,8 @@ conic_status cli_accumulate_picture(cli_session *session, cli_render_job *job, i
   conic_status status = cli_shot_begin(job, &drawing);
   drawing.keeper = &keeper;
   drawing.seconds = own->seconds;
+  if (!session->json_path && !own->is_resumable && !own->resume_path) /* nobody asks for their means */
+    drawing.planes &= ~job->unwritten_planes;
   if (status == CONIC_OK)
     status = conic_shot_work_draw(&drawing, image, outcome);
   if (status == CONIC_ERROR_ARGUMENT && own->n_resumed)
