@@ -2,7 +2,7 @@
 
 #include "core/image/image_common.h"
 
-enum { NO_RECEIVER, RECEIVER, RECEIVER_AT_EDGE, MOST_EDGE_PX = 4 };
+enum { NO_RECEIVER, RECEIVER, RECEIVER_AT_EDGE };
 
 static size_t pixel_at(const conic_edge_spread *s, size_t x, size_t y) {
   return y * (size_t)s->image->width + x;
@@ -89,7 +89,7 @@ static void find_receivers_at_edges(void *data, size_t y, int i_thread) {
       s->kind[pixel_at(s, x, y)] = RECEIVER_AT_EDGE;
 }
 
-/* Pixels that are no receivers of their own, and have one about them or are at an edge. */
+/* Counts and marks the pixels that are no receivers of their own, and have one about them or are at an edge. */
 static void find_means(void *data, size_t y, int i_thread) {
   const conic_edge_spread *s = data;
   const size_t width = (size_t)s->image->width, reach = s->edge_px;
@@ -97,6 +97,7 @@ static void find_means(void *data, size_t y, int i_thread) {
   unsigned char *restrict columns = (unsigned char *)(s->columns + 2 * width * (size_t)i_thread);
   unsigned char *restrict takes_mean = s->takes_mean + pixel_at(s, 0, y);
   const unsigned char *kind = s->kind + pixel_at(s, 0, y);
+  uint32_t n = 0;
   memset(columns, 0, width + 2 * reach); /* as many beside the picture */
   for (size_t row = range.top; row < range.bottom; row++)
     for (size_t x = 0; x < width; x++)
@@ -105,15 +106,45 @@ static void find_means(void *data, size_t y, int i_thread) {
   for (size_t shift = 0; shift <= 2 * reach; shift++)
     for (size_t x = 0; x < width; x++)
       takes_mean[x] |= columns[shift + x];
-  size_t begin = 0, end = width;
-  for (; end > 0 && !takes_mean[end - 1]; end--)
-    ;
-  for (; begin < end && !takes_mean[begin]; begin++)
-    ;
-  s->ends[y][0] = (uint32_t)begin;
-  s->ends[y][1] = (uint32_t)end;
-  for (size_t x = 0; x < width; x++)
+  for (size_t x = 0; x < width; x++) {
     takes_mean[x] = takes_mean[x] != 0 && kind[x] != RECEIVER;
+    n += takes_mean[x];
+  }
+  s->means_before[y + 1] = n;
+}
+
+/* Takes the pixels about one that are of a kind, with depths from nearest to deepest; returns 0 where there are none.
+ */
+static int take_about(const conic_edge_spread *s, size_t x, size_t y, unsigned char kind, float nearest, float deepest,
+                      conic_spread_mean *mean) {
+  const float *z = s->image->planes[CONIC_PLANE_Z];
+  const pixel_range range = pixels_about(s, x, y);
+  const size_t reach = s->edge_px;
+  for (size_t j = range.top; j < range.bottom; j++)
+    for (size_t i = range.left; i < range.right; i++) {
+      size_t pixel = pixel_at(s, i, j), bit = (j + reach - y) * (2 * reach + 1) + (i + reach - x);
+      uint64_t is_taken = s->kind[pixel] == kind && !(z[pixel] < nearest || z[pixel] > deepest);
+      mean->about[bit / 64] |= is_taken << bit % 64;
+    }
+  return (mean->about[0] | mean->about[1]) != 0;
+}
+
+/* A pixel at an edge gets the mean of its surface's receivers around it; a pixel that is no receiver, but at the border
+ * of what is drawn, the mean of the receivers around it. */
+static void list_means(void *data, size_t y) {
+  const conic_edge_spread *s = data;
+  conic_spread_mean *mean = s->means + s->means_before[y];
+  for (size_t x = 0, pixel = pixel_at(s, 0, y); x < (size_t)s->image->width; x++, pixel++) {
+    if (!s->takes_mean[pixel])
+      continue;
+    *mean = (conic_spread_mean){.pixel = (uint32_t)pixel};
+    if (s->kind[pixel] == RECEIVER_AT_EDGE) {
+      float z = ((const float *)s->image->planes[CONIC_PLANE_Z])[pixel], step = depth_of_step(s, x, y);
+      take_about(s, x, y, RECEIVER, z - step, z + step, mean);
+    } else if (!take_about(s, x, y, RECEIVER, 0.0f, HUGE_VALF, mean))
+      take_about(s, x, y, RECEIVER_AT_EDGE, 0.0f, HUGE_VALF, mean);
+    mean++;
+  }
 }
 
 static void name_receivers(conic_edge_spread *s) {
@@ -122,62 +153,40 @@ static void name_receivers(conic_edge_spread *s) {
     s->kind[s->receivers->pixel[i]] = RECEIVER;
 }
 
-/* The mean over the pixels around one that are of a kind, with depths from nearest to deepest; returns 0 where there
- * are none. */
-static int mean_about(const conic_edge_spread *s, size_t x, size_t y, unsigned char kind, float nearest, float deepest,
-                      float *mean) {
-  const float *z = s->image->planes[CONIC_PLANE_Z];
-  pixel_range range = pixels_about(s, x, y);
-  float sum = 0.0f, n = 0.0f;
-  for (size_t j = range.top; j < range.bottom; j++)
-    for (size_t i = range.left; i < range.right; i++) {
-      size_t pixel = pixel_at(s, i, j);
-      if (s->kind[pixel] != kind || z[pixel] < nearest || z[pixel] > deepest)
-        continue;
-      sum += s->own[pixel];
-      n += 1.0f;
-    }
-  *mean = sum / n;
-  return n > 0.0f;
+enum { SPREAD_TOGETHER = 1024 };
+
+static size_t end_of_means(const conic_edge_spread *s, size_t i_item) {
+  const size_t n = s->means_before[s->image->height], end = (i_item + 1) * SPREAD_TOGETHER;
+  return end < n ? end : n;
 }
 
-/* What a pixel gets that takes a mean: one at an edge the mean of its
- * surface's receivers around it; a pixel that is no receiver, but at the border of what is drawn, the mean of the
- * receivers around it. */
-static float spread_at(const conic_edge_spread *s, size_t x, size_t y) {
-  size_t pixel = pixel_at(s, x, y);
-  float mean;
-  if (s->kind[pixel] == RECEIVER_AT_EDGE) {
-    float z = ((const float *)s->image->planes[CONIC_PLANE_Z])[pixel], step = depth_of_step(s, x, y);
-    return mean_about(s, x, y, RECEIVER, z - step, z + step, &mean) ? mean : s->own[pixel];
-  }
-  return mean_about(s, x, y, RECEIVER, 0.0f, HUGE_VALF, &mean) ||
-                 mean_about(s, x, y, RECEIVER_AT_EDGE, 0.0f, HUGE_VALF, &mean)
-             ? mean
-             : s->otherwise;
-}
-
-static void fill_row(void *data, size_t y) {
+static void find_values(void *data, size_t i_item) {
   const conic_edge_spread *s = data;
-  const size_t first = pixel_at(s, s->ends[y][0], y), n = s->ends[y][1] - s->ends[y][0];
-  const unsigned char *kind = s->kind + first, *takes_mean = s->takes_mean + first;
-  const float *own = s->own + first, otherwise = s->otherwise;
-  float *restrict filled = s->filled + first;
-  for (size_t i = 0; i < n; i++) {
-    float value = own[i];
-    filled[i] = kind[i] == RECEIVER ? value : otherwise;
+  for (size_t i = i_item * SPREAD_TOGETHER; i < end_of_means(s, i_item); i++) {
+    conic_spread_mean *mean = &s->means[i];
+    const float *own = s->filled + mean->pixel;
+    float sum = 0.0f, n = 0.0f;
+    for (int word = 0; word < 2; word++)
+      for (uint64_t left = mean->about[word]; left; left &= left - 1) {
+        sum += own[s->offsets[64 * word + __builtin_ctzll(left)]];
+        n += 1.0f;
+      }
+    mean->value = n > 0.0f ? sum / n : *own;
   }
-  for (const unsigned char *next = takes_mean; (next = memchr(next, 1, n - (size_t)(next - takes_mean))); next++)
-    filled[next - takes_mean] = spread_at(s, s->ends[y][0] + (size_t)(next - takes_mean), y);
 }
 
-static void fill_beside(void *data, size_t y) {
+static void place_means(void *data, size_t i_item) {
   const conic_edge_spread *s = data;
-  float *filled = s->filled + pixel_at(s, 0, y);
-  for (size_t x = 0; x < s->ends[y][0]; x++)
-    filled[x] = s->otherwise;
-  for (size_t x = s->ends[y][1]; x < (size_t)s->image->width; x++)
-    filled[x] = s->otherwise;
+  for (size_t i = i_item * SPREAD_TOGETHER; i < end_of_means(s, i_item); i++)
+    s->filled[s->means[i].pixel] = s->means[i].value;
+}
+
+static void fill_others(void *data, size_t y) {
+  const conic_edge_spread *s = data;
+  const unsigned char *kind = s->kind + pixel_at(s, 0, y);
+  float *restrict filled = s->filled + pixel_at(s, 0, y);
+  for (size_t x = 0; x < (size_t)s->image->width; x++)
+    filled[x] = kind[x] == NO_RECEIVER ? s->otherwise : filled[x];
 }
 
 typedef struct own_values {
@@ -191,24 +200,26 @@ static void place_values(void *data, size_t i_item) {
   size_t begin = i_item * CONIC_RECEIVED_TOGETHER, end = begin + CONIC_RECEIVED_TOGETHER;
   end = end < receivers->count ? end : receivers->count;
   for (size_t i = begin; i < end; i++)
-    work->s->own[receivers->pixel[i]] = work->of_receivers[i];
+    work->s->filled[receivers->pixel[i]] = work->of_receivers[i];
 }
 
 void conic_edge_spread_fill(conic_edge_spread *s, const float *of_receivers, float otherwise) {
   const int is_as_before = s->otherwise == otherwise;
-  const size_t n_items = (s->receivers->count + CONIC_RECEIVED_TOGETHER - 1) / CONIC_RECEIVED_TOGETHER;
+  const size_t n_items = (s->receivers->count + CONIC_RECEIVED_TOGETHER - 1) / CONIC_RECEIVED_TOGETHER,
+               n_means = (s->means_before[s->image->height] + SPREAD_TOGETHER - 1) / SPREAD_TOGETHER;
   own_values work = {s, of_receivers};
   s->otherwise = otherwise;
-  conic_parallel_for(s->context, n_items, place_values, &work);
   if (!is_as_before)
-    conic_parallel_for(s->context, (size_t)s->image->height, fill_beside, s);
-  conic_parallel_for(s->context, (size_t)s->image->height, fill_row, s);
+    conic_parallel_for(s->context, (size_t)s->image->height, fill_others, s);
+  conic_parallel_for(s->context, n_items, place_values, &work);
+  conic_parallel_for(s->context, n_means, find_values, s);
+  conic_parallel_for(s->context, n_means, place_means, s);
 }
 
 conic_status conic_edge_spread_init(conic_context *context, const conic_camera *camera, const conic_image *image,
                                     const conic_receivers *receivers, double epsilon, int samples,
                                     conic_edge_spread *s) {
-  size_t n = conic_image_pixels(image);
+  const size_t n = conic_image_pixels(image), width = (size_t)image->width, height = (size_t)image->height;
   double edge = epsilon > 0.0 ? 0.5 * epsilon / receivers->spacing : 0.0;
   *s = (conic_edge_spread){.context = context,
                            .image = image,
@@ -216,26 +227,33 @@ conic_status conic_edge_spread_init(conic_context *context, const conic_camera *
                            .epsilon = (float)epsilon,
                            .samples = samples,
                            .otherwise = NAN,
-                           .edge_px = edge > 1.0 ? edge < MOST_EDGE_PX ? (size_t)edge : MOST_EDGE_PX : 1};
+                           .edge_px =
+                               edge > 1.0 ? edge < CONIC_MOST_SPREAD_PX ? (size_t)edge : CONIC_MOST_SPREAD_PX : 1};
   conic_camera_rays_init(camera, &s->rays);
-  s->own = conic_memory_allocate(context, n, sizeof *s->own);
-  s->filled = conic_memory_allocate(context, n, sizeof *s->filled);
-  s->kind = conic_memory_allocate(context, n, 2);
-  s->ends = conic_memory_allocate(context, (size_t)image->height, sizeof *s->ends);
-  s->columns = conic_memory_allocate(context, (size_t)image->width + 2 * MOST_EDGE_PX,
-                                     2 * (size_t)conic_context_threads(context) * sizeof *s->columns);
-  if (!s->own || !s->filled || !s->kind || !s->ends || !s->columns)
+  if (conic_memory_allocate_these(
+          context, CONIC_ROOM(s->filled, n), CONIC_ROOM(s->kind, 2 * n), CONIC_ROOM(s->means_before, height + 1),
+          CONIC_ROOM(s->columns, (width + 2 * CONIC_MOST_SPREAD_PX) * 2 * (size_t)conic_context_threads(context))) !=
+      CONIC_OK)
     return CONIC_ERROR_MEMORY;
   s->takes_mean = s->kind + n;
   name_receivers(s);
   if (s->epsilon > 0.0f || samples > 1)
-    conic_parallel_for(context, (size_t)image->height, find_receivers_at_edges, s);
-  conic_parallel_for(context, (size_t)image->height, find_means, s);
+    conic_parallel_for(context, height, find_receivers_at_edges, s);
+  s->means_before[0] = 0;
+  conic_parallel_for(context, height, find_means, s);
+  for (size_t y = 0; y < height; y++)
+    s->means_before[y + 1] += s->means_before[y];
+  s->means = conic_memory_allocate(context, s->means_before[height], sizeof *s->means);
+  if (!s->means)
+    return CONIC_ERROR_MEMORY;
+  for (int bit = 0, edge_px = (int)s->edge_px, across = 2 * edge_px + 1; bit < across * across; bit++)
+    s->offsets[bit] = (bit / across - edge_px) * (ptrdiff_t)width + (bit % across - edge_px);
+  conic_parallel_for(context, height, list_means, s);
   return CONIC_OK;
 }
 
 void conic_edge_spread_release(conic_edge_spread *s) {
   if (!s->context)
     return;
-  conic_memory_release_these(s->context, s->columns, s->ends, s->kind, s->filled, s->own);
+  conic_memory_release_these(s->context, s->means, s->columns, s->means_before, s->kind, s->filled);
 }

@@ -6,6 +6,18 @@
 
 /* Turns what the points of a surface receive into what the pixels of a picture receive. */
 
+/* A pixel that gets the mean of what some about it received. */
+typedef struct conic_spread_mean {
+  uint64_t about[2]; /* a bit for each of the pixels around, row by row; none: it keeps what it has */
+  uint32_t pixel;
+  float value;
+} conic_spread_mean;
+
+enum {
+  CONIC_MOST_SPREAD_PX = 4,
+  CONIC_SPREAD_WINDOW = (2 * CONIC_MOST_SPREAD_PX + 1) * (2 * CONIC_MOST_SPREAD_PX + 1)
+};
+
 typedef struct conic_edge_spread {
   conic_context *context;
   const conic_image *image;
@@ -13,14 +25,15 @@ typedef struct conic_edge_spread {
   conic_camera_rays rays;
   float epsilon;             /* the casters' */
   int samples;               /* N × N of the picture's pixel */
-  size_t edge_px;            /* how far splats may stick out */
+  size_t edge_px;            /* how far splats may stick out, to CONIC_MOST_SPREAD_PX */
   unsigned char *kind;       /* of each pixel */
   unsigned char *takes_mean; /* of each pixel: 1 where it gets what others about it received */
-  float *own;                /* of each pixel that is a receiver: what it received */
-  float *filled;             /* of each pixel: what it gets from that */
-  float otherwise;           /* for pixels that get nothing; NaN before the first filling */
-  uint32_t (*ends)[2];       /* of each row: before and from where on no pixel gets anything */
-  float *columns;            /* room of each thread */
+  uint32_t *means_before;    /* of each row, and of all: the means in the rows above */
+  conic_spread_mean *means;
+  ptrdiff_t offsets[CONIC_SPREAD_WINDOW]; /* of the bits of `about`: to their pixels */
+  float *filled;                          /* of each pixel: what it gets */
+  float otherwise;                        /* for pixels that get nothing; NaN before the first filling */
+  float *columns;                         /* room of each thread */
 } conic_edge_spread;
 
 /* Finds which pixels of the picture, which has Z and N, are at edges. Keeps references to the arguments. Errors:
