@@ -209,10 +209,10 @@ typedef struct bounding {
   const conic_thinner *thinner;
   size_t n_below;
   const conic_layers_node **below;
-  conic_layers_disc *discs; /* the node's samples as they are drawn, in the order in which they were chosen */
-  double quantum;           /* a step of the grid, as they have it */
-  int is_cut;               /* full resolution may draw less of a sample than its outline */
-  _Atomic uint64_t most;    /* the bits of a number that is not negative, which have its order */
+  conic_layers_chosen discs; /* the node's samples as they are drawn */
+  double quantum;            /* a step of the grid, as they have it */
+  int is_cut;                /* full resolution may draw less of a sample than its outline */
+  _Atomic uint64_t most;     /* the bits of a number that is not negative, which have its order */
   atomic_int status;
 } bounding;
 
@@ -261,7 +261,7 @@ static conic_layers_disc disc_in(const conic_layers_node *node, uint64_t key, co
 static void reach_below(void *data, size_t i_item) {
   bounding *b = data;
   const conic_layers_node *below = b->below[i_item];
-  const conic_layers_chosen chosen = {b->thinner, b->discs};
+  int has_discs = b->discs.thinner != NULL;
   uint64_t keys[SOME_KEYS];
   conic_layers_facet facets[SOME_KEYS];
   conic_layers_disc discs[SOME_KEYS];
@@ -269,16 +269,16 @@ static void reach_below(void *data, size_t i_item) {
   for (size_t first = 0, n; first < below->n_drawn; first += n) {
     n = below->n_drawn - first < SOME_KEYS ? below->n_drawn - first : SOME_KEYS;
     conic_status status = conic_layers_fetch_keys(below, first, n, keys);
-    if (status == CONIC_OK && b->discs)
+    if (status == CONIC_OK && has_discs)
       status = conic_layers_fetch_facets(below, first, n, facets);
     if (status != CONIC_OK) {
       atomic_store(&b->status, (int)status);
       return;
     }
-    for (size_t i = 0; i < n && b->discs; i++)
+    for (size_t i = 0; i < n && has_discs; i++)
       discs[i] = disc_in(below, keys[i], &facets[i], b->quantum);
-    most = b->discs ? conic_layers_disc_error(&chosen, discs, n, below->error, most)
-                    : conic_thinner_reach(b->thinner, keys, n, below->covering, most);
+    most = has_discs ? conic_layers_disc_error(&b->discs, discs, n, below->error, most)
+                     : conic_thinner_reach(b->thinner, keys, n, below->covering, most);
   }
   raise_most(b, most);
 }
@@ -318,16 +318,19 @@ static void find_past(const bounding *b) {
 static conic_status find_node_error(conic_context *context, int is_alone, bounding *b) {
   conic_layers_node *node = b->node;
   uint32_t *numbers = conic_memory_allocate(context, node->n_drawn, sizeof *numbers);
-  b->discs = conic_memory_allocate(context, node->n_drawn, sizeof *b->discs);
-  conic_status status = numbers && b->discs ? CONIC_OK : CONIC_ERROR_MEMORY;
+  conic_status status =
+      numbers ? conic_layers_chosen_create(context, b->thinner, node->n_drawn, &b->discs) : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK) {
     size_t n = conic_thinner_numbers(b->thinner, numbers);
-    for (size_t i = 0; i < n; i++)
-      b->discs[i] = disc_in(node, node->keys[numbers[i]], &node->facets[numbers[i]], b->quantum);
+    for (size_t i = 0; i < n; i++) {
+      const conic_layers_disc disc = disc_in(node, node->keys[numbers[i]], &node->facets[numbers[i]], b->quantum);
+      conic_layers_chosen_put(&b->discs, i, &disc);
+    }
     node->error = find_most(context, is_alone, b, node->past);
     status = (conic_status)atomic_load(&b->status);
   }
-  conic_memory_release_these(context, b->discs, numbers);
+  conic_layers_chosen_release(context, &b->discs);
+  conic_memory_release(context, numbers);
   return status;
 }
 

@@ -1,6 +1,7 @@
 #include "lod/layers/build/layers_thin.h"
 
 #include "core/base/random.h"
+#include "core/lanes/lanes.h"
 #include "lod/layers/format/layers_key.h"
 
 typedef struct point {
@@ -13,52 +14,51 @@ typedef struct chosen_point {
   uint32_t next;
 } chosen_point;
 
-/* A cell of the grid that holds points. */
-typedef struct cell {
-  uint64_t place; /* its number on each axis; NO_PLACE: free */
-  uint32_t first; /* of its points, which are chained by `next` */
-} cell;
-
-#define NO_PLACE UINT64_MAX
 #define NO_POINT UINT32_MAX
 
 struct conic_thinner {
   size_t n, most_points;
-  point *points;   /* loaded */
+  point *points; /* loaded */
+  point low, high;
   uint32_t *order; /* in which they are looked at */
   size_t n_ordered;
   size_t n_chosen;
   uint32_t *chosen;    /* which, and */
   uint32_t *number;    /* of a point that is chosen, how many before it are */
   chosen_point *links; /* where */
-  size_t n_cells;      /* a power of two, over twice the chosen */
-  cell *cells;
+  size_t n_cells;
+  uint32_t *cells;   /* of each, the first of its chain; once all are chosen, how many come before it */
+  uint32_t first;    /* in that order, the one chosen first */
+  uint32_t *by_cell; /* the chosen, cell by cell, and where they are; a few more can be read */
+  float *at[3];
   float edge, cells_a_step;
+  int shift; /* 2^shift cells on each axis share a place in `cells` where there are too many of them */
+  int32_t first_cell[3], cells_on[3];
 };
 
-/* A power of two, at least twice as many. */
+/* A surface of n points meets some n of the (n/3)^1.5 cells around it. */
 static size_t cells_for(size_t n_points) {
-  size_t n_cells = 64;
-  while (n_cells < 2 * n_points)
-    n_cells *= 2;
-  return n_cells;
+  return 8 * n_points + 64;
 }
 
 size_t conic_thinner_bytes(size_t most_points) {
-  return most_points * (sizeof(point) + 3 * sizeof(uint32_t) + sizeof(chosen_point)) +
-         cells_for(most_points) * sizeof(cell);
+  return most_points * (2 * sizeof(point) + 4 * sizeof(uint32_t) + sizeof(chosen_point)) +
+         cells_for(most_points) * sizeof(uint32_t);
 }
 
 conic_status conic_thinner_create(conic_context *context, size_t most_points, conic_thinner **thinner) {
-  size_t n_cells = cells_for(most_points);
+  size_t n_cells = cells_for(most_points), n_read = most_points + CONIC_LANES;
   *thinner = NULL;
   conic_thinner *made = conic_memory_allocate_zeroed(context, 1, sizeof *made);
   if (!made)
     return CONIC_ERROR_MEMORY;
   made->most_points = most_points;
+  made->n_cells = n_cells;
   if (conic_memory_allocate_these(context, CONIC_ROOM(made->points, most_points), CONIC_ROOM(made->order, most_points),
                                   CONIC_ROOM(made->chosen, most_points), CONIC_ROOM(made->number, most_points),
-                                  CONIC_ROOM(made->links, most_points), CONIC_ROOM(made->cells, n_cells)) == CONIC_OK) {
+                                  CONIC_ROOM(made->links, most_points), CONIC_ROOM(made->cells, n_cells + 1),
+                                  CONIC_ROOM(made->by_cell, most_points), CONIC_ZEROED(made->at[0], n_read),
+                                  CONIC_ZEROED(made->at[1], n_read), CONIC_ZEROED(made->at[2], n_read)) == CONIC_OK) {
     *thinner = made;
     return CONIC_OK;
   }
@@ -69,10 +69,16 @@ conic_status conic_thinner_create(conic_context *context, size_t most_points, co
 void conic_thinner_destroy(conic_context *context, conic_thinner *thinner) {
   if (!thinner)
     return;
-  void *const owned[] = {thinner->points, thinner->order, thinner->chosen,
-                         thinner->number, thinner->links, thinner->cells};
-  conic_memory_release_all(context, owned, sizeof owned / sizeof *owned);
-  conic_memory_release(context, thinner);
+  conic_memory_release_these(context, thinner->points, thinner->order, thinner->chosen, thinner->number, thinner->links,
+                             thinner->cells, thinner->by_cell, thinner->at[0], thinner->at[1], thinner->at[2], thinner);
+}
+
+static float lesser(float a, float b) {
+  return a < b ? a : b;
+}
+
+static float greater(float a, float b) {
+  return a > b ? a : b;
 }
 
 static point point_of(uint64_t key) {
@@ -96,56 +102,49 @@ static void shuffle(conic_thinner *thinner) {
 void conic_thinner_load(conic_thinner *thinner, const uint64_t *keys, size_t stride_bytes, size_t n) {
   const unsigned char *at = (const unsigned char *)keys;
   thinner->n = n;
+  thinner->low = (point){HUGE_VALF, HUGE_VALF, HUGE_VALF};
+  thinner->high = (point){0.0f, 0.0f, 0.0f};
   for (size_t i = 0; i < n; i++, at += stride_bytes) {
     uint64_t key;
     memcpy(&key, at, sizeof key);
-    thinner->points[i] = point_of(key);
+    const point p = point_of(key);
+    thinner->points[i] = p;
+    thinner->low = (point){lesser(p.x, thinner->low.x), lesser(p.y, thinner->low.y), lesser(p.z, thinner->low.z)};
+    thinner->high =
+        (point){greater(p.x, thinner->high.x), greater(p.y, thinner->high.y), greater(p.z, thinner->high.z)};
   }
   shuffle(thinner);
 }
 
+/* On an axis; the first is 1, so that there is one before it. */
+static int32_t cell_of(const conic_thinner *thinner, float coordinate) {
+  return (int32_t)(coordinate * thinner->cells_a_step) + 1;
+}
+
 /* Cells are twice the distance wide and a hair, so that what is within the distance of a point lies in the eight cells
- * whose common corner is nearest to it. */
-static void clear(conic_thinner *thinner, double distance, size_t n_points) {
-  thinner->n_cells = cells_for(n_points);
+ * whose common corner is nearest to it. The grid has those of all points and one more on each side. */
+static void clear(conic_thinner *thinner, double distance) {
+  const float low[3] = {thinner->low.x, thinner->low.y, thinner->low.z},
+              high[3] = {thinner->high.x, thinner->high.y, thinner->high.z};
+  uint64_t n = UINT64_MAX;
   thinner->n_chosen = 0;
   thinner->edge = (float)((distance > 1.0 ? 2.0 * distance : 2.0) * (1.0 + 1e-4));
   thinner->cells_a_step = 1.0f / thinner->edge;
-  memset(thinner->cells, 0xff, thinner->n_cells * sizeof *thinner->cells);
-}
-
-static uint64_t place_of_cell(int32_t x, int32_t y, int32_t z) {
-  return (uint64_t)(uint32_t)(x + 1) << 42 | (uint64_t)(uint32_t)(y + 1) << 21 | (uint64_t)(uint32_t)(z + 1);
-}
-
-/* The cell of a place, or the free one that would be it. */
-static cell *find_cell(const conic_thinner *thinner, uint64_t place) {
-  size_t mask = thinner->n_cells - 1, i = (size_t)(place * UINT64_C(0x9e3779b97f4a7c15) >> 32) & mask;
-  while (thinner->cells[i].place != place && thinner->cells[i].place != NO_PLACE)
-    i = (i + 1) & mask;
-  return &thinner->cells[i];
+  for (thinner->shift = 0; n > thinner->n_cells; thinner->shift++) {
+    n = 1;
+    for (int axis = 0; axis < 3; axis++) {
+      thinner->first_cell[axis] = (cell_of(thinner, low[axis]) - 1) >> thinner->shift;
+      thinner->cells_on[axis] = ((cell_of(thinner, high[axis]) + 1) >> thinner->shift) - thinner->first_cell[axis] + 1;
+      n *= (uint64_t)thinner->cells_on[axis];
+    }
+  }
+  thinner->shift--;
+  memset(thinner->cells, 0xff, n * sizeof *thinner->cells);
 }
 
 static float squared_distance(point a, point b) {
   float x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
   return x * x + y * y + z * z;
-}
-
-/* The least squared distance to a point of the cell, *nearest, if it is below `nearest2`; else that. The first that is
- * not above `enough2` will do. */
-static float look_into(const conic_thinner *thinner, uint64_t place, point at, float enough2, float nearest2,
-                       point *nearest) {
-  const cell *found = find_cell(thinner, place);
-  if (found->place == NO_PLACE)
-    return nearest2;
-  for (uint32_t i = found->first; i != NO_POINT && !(nearest2 <= enough2); i = thinner->links[i].next) {
-    float distance2 = squared_distance(at, thinner->links[i].at);
-    if (distance2 < nearest2) {
-      nearest2 = distance2;
-      *nearest = thinner->links[i].at;
-    }
-  }
-  return nearest2;
 }
 
 typedef struct octant {
@@ -157,48 +156,76 @@ static octant octant_of(const conic_thinner *thinner, point at) {
   octant o;
   for (int axis = 0; axis < 3; axis++) {
     float scaled = coordinates[axis] * thinner->cells_a_step;
-    o.cell[axis] = (int32_t)scaled;
-    o.side[axis] = scaled - (float)o.cell[axis] < 0.5f ? -1 : 1;
+    o.cell[axis] = (int32_t)scaled + 1;
+    o.side[axis] = scaled - (float)(o.cell[axis] - 1) < 0.5f ? -1 : 1;
   }
   return o;
 }
 
-/* The square of the distance to the nearest chosen point, if that is within half a cell; else some value that is more.
- * Stops at what is near enough. */
-static float nearest_within_cells(const conic_thinner *thinner, point at, float enough2, point *nearest) {
-  float nearest2 = HUGE_VALF;
-  octant o = octant_of(thinner, at);
-  for (int i = 0; i < 8 && !(nearest2 <= enough2); i++)
-    nearest2 = look_into(thinner,
-                         place_of_cell(o.cell[0] + (i & 1 ? o.side[0] : 0), o.cell[1] + (i & 2 ? o.side[1] : 0),
-                                       o.cell[2] + (i & 4 ? o.side[2] : 0)),
-                         at, enough2, nearest2, nearest);
-  return nearest2;
+/* The places in `cells` of a point's own cell, and of the nearer one on its other side, on each axis; their sum over
+ * the axes is a cell's. */
+static void places_of(const conic_thinner *thinner, point at, uint32_t places[3][2]) {
+  const octant o = octant_of(thinner, at);
+  uint32_t stride = 1;
+  for (int axis = 0; axis < 3; axis++) {
+    places[axis][0] = (uint32_t)((o.cell[axis] >> thinner->shift) - thinner->first_cell[axis]) * stride;
+    places[axis][1] =
+        (uint32_t)(((o.cell[axis] + o.side[axis]) >> thinner->shift) - thinner->first_cell[axis]) * stride;
+    stride *= (uint32_t)thinner->cells_on[axis];
+  }
 }
 
-static void insert(conic_thinner *thinner, uint32_t i_point) {
-  octant o = octant_of(thinner, thinner->points[i_point]);
-  uint64_t place = place_of_cell(o.cell[0], o.cell[1], o.cell[2]);
-  cell *found = find_cell(thinner, place);
-  uint32_t i = (uint32_t)thinner->n_chosen++;
+/* Whether a chosen point is nearer than that; it is within half a cell. */
+static int has_near(const conic_thinner *thinner, point at, uint32_t places[3][2], float below2) {
+  for (int i = 0; i < 8; i++) {
+    uint32_t k = thinner->cells[places[0][i & 1] + places[1][i >> 1 & 1] + places[2][i >> 2]];
+    for (; k != NO_POINT; k = thinner->links[k].next)
+      if (squared_distance(at, thinner->links[k].at) < below2)
+        return 1;
+  }
+  return 0;
+}
+
+static void insert(conic_thinner *thinner, uint32_t i_point, uint32_t places[3][2]) {
+  uint32_t *first = &thinner->cells[places[0][0] + places[1][0] + places[2][0]], i = (uint32_t)thinner->n_chosen++;
   thinner->chosen[i] = i_point;
-  thinner->links[i] = (chosen_point){thinner->points[i_point], found->place == place ? found->first : NO_POINT};
-  found->place = place;
-  found->first = i;
+  thinner->links[i] = (chosen_point){thinner->points[i_point], *first};
+  *first = i;
 }
 
 /* Fills the grid with points at least `distance` apart, until there are no more or `most` are exceeded. */
 static size_t throw_darts(conic_thinner *thinner, double distance, size_t most) {
   float below2 = (float)(distance * distance);
-  float enough2 = nextafterf(below2, 0.0f); /* nearer than the distance */
-  point nearest;
-  clear(thinner, distance, most + 1 < thinner->n ? most + 1 : thinner->n);
+  uint32_t places[3][2];
+  clear(thinner, distance);
   for (size_t i = 0; i < thinner->n && thinner->n_chosen <= most; i++) {
     uint32_t i_point = thinner->order[i];
-    if (!(nearest_within_cells(thinner, thinner->points[i_point], enough2, &nearest) < below2))
-      insert(thinner, i_point);
+    places_of(thinner, thinner->points[i_point], places);
+    if (!has_near(thinner, thinner->points[i_point], places, below2))
+      insert(thinner, i_point, places);
   }
   return thinner->n_chosen;
+}
+
+/* Brings the chosen into the order of their cells. */
+static void sort_by_cell(conic_thinner *thinner) {
+  size_t n_cells = 1;
+  uint32_t n = 0;
+  for (int axis = 0; axis < 3; axis++)
+    n_cells *= (size_t)thinner->cells_on[axis];
+  for (size_t i = 0; i < n_cells; i++) {
+    uint32_t k = thinner->cells[i];
+    thinner->cells[i] = n;
+    for (; k != NO_POINT; k = thinner->links[k].next) {
+      if (k == 0)
+        thinner->first = n;
+      thinner->by_cell[n] = k;
+      thinner->at[0][n] = thinner->links[k].at.x;
+      thinner->at[1][n] = thinner->links[k].at.y;
+      thinner->at[2][n++] = thinner->links[k].at.z;
+    }
+  }
+  thinner->cells[n_cells] = n;
 }
 
 /* Off by this fraction is near enough; so often it is tried. */
@@ -242,6 +269,7 @@ size_t conic_thinner_choose(conic_thinner *thinner, size_t target, size_t most, 
   }
   if (at != best || n > most)
     n = throw_darts(thinner, best, most);
+  sort_by_cell(thinner);
   memset(is_chosen, 0, thinner->n);
   for (size_t i = 0; i < n; i++)
     is_chosen[thinner->chosen[i]] = 1;
@@ -252,54 +280,102 @@ size_t conic_thinner_choose(conic_thinner *thinner, size_t target, size_t most, 
   return n;
 }
 
-/* Past the near cells all are looked at: that is seldom. */
-static float nearest_of_all(const conic_thinner *thinner, point at) {
-  float nearest2 = HUGE_VALF;
-  for (size_t i = 0; i < thinner->n_chosen; i++) {
-    float distance2 = squared_distance(at, thinner->links[i].at);
-    nearest2 = distance2 < nearest2 ? distance2 : nearest2;
+/* Lists those of a row that lie in cells `from` to `to`, in runs. */
+static void list_runs(const conic_thinner *thinner, const int32_t from[3], const int32_t to[3], conic_thinner_row row,
+                      conic_thinner_rows *rows) {
+  for (uint32_t i = row.begin; i < row.end && rows->n < CONIC_THINNER_ROWS; i++) {
+    int is_in = 1;
+    for (int axis = 0; axis < 3; axis++) {
+      int32_t cell = cell_of(thinner, thinner->at[axis][i]);
+      is_in &= cell >= from[axis] && cell <= to[axis];
+    }
+    if (is_in && rows->n > 0 && rows->list[rows->n - 1].end == i)
+      rows->list[rows->n - 1].end++;
+    else if (is_in)
+      rows->list[rows->n++] = (conic_thinner_row){i, i + 1};
   }
-  return nearest2;
+}
+
+void conic_thinner_beside(const conic_thinner *thinner, const float at[3], int is_wide, conic_thinner_rows *rows) {
+  const octant o = octant_of(thinner, (point){at[0], at[1], at[2]});
+  int32_t from[3], to[3], low[3], high[3];
+  for (int axis = 0; axis < 3; axis++) {
+    from[axis] = o.cell[axis] - (is_wide || o.side[axis] < 0);
+    to[axis] = o.cell[axis] + (is_wide || o.side[axis] > 0);
+    low[axis] = (from[axis] >> thinner->shift) - thinner->first_cell[axis];
+    high[axis] = (to[axis] >> thinner->shift) - thinner->first_cell[axis];
+    low[axis] = low[axis] > 0 ? low[axis] : 0;
+    high[axis] = high[axis] < thinner->cells_on[axis] ? high[axis] : thinner->cells_on[axis] - 1;
+  }
+  rows->n = 0;
+  for (int32_t z = low[2]; z <= high[2]; z++)
+    for (int32_t y = low[1]; y <= high[1] && low[0] <= high[0]; y++) {
+      const uint32_t *first = thinner->cells + (z * thinner->cells_on[1] + y) * thinner->cells_on[0];
+      const conic_thinner_row row = {first[low[0]], first[high[0] + 1]};
+      if (thinner->shift > 0)
+        list_runs(thinner, from, to, row, rows);
+      else if (row.begin < row.end)
+        rows->list[rows->n++] = row;
+    }
+}
+
+/* The square of the distance to the nearest chosen point of some rows, which becomes *nearest. */
+static float nearest_in_rows(const conic_thinner *thinner, const conic_thinner_rows *rows, point at, point *nearest) {
+  const lanes x = lanes_of(at.x), y = lanes_of(at.y), z = lanes_of(at.z);
+  lanes least = lanes_of(HUGE_VALF);
+  int_lanes which = lanes_of_int(0);
+  for (size_t i_row = 0; i_row < rows->n; i_row++)
+    for (uint32_t i = rows->list[i_row].begin; i < rows->list[i_row].end; i += CONIC_LANES) {
+      const int_lanes number = ints_of_indices(lanes_ascending(i));
+      lanes dx = x - lanes_load(thinner->at[0] + i), dy = y - lanes_load(thinner->at[1] + i),
+            dz = z - lanes_load(thinner->at[2] + i), distance2 = dx * dx + dy * dy + dz * dz;
+      lanes_mask is_in = lanes_less_int(number, lanes_of_int((int32_t)rows->list[i_row].end));
+      distance2 = lanes_select(is_in, distance2, lanes_of(HUGE_VALF));
+      which = lanes_select_ints(lanes_less(distance2, least), number, which);
+      least = lanes_min(distance2, least);
+    }
+  int best = 0;
+  for (int lane = 1; lane < CONIC_LANES; lane++)
+    best = least[lane] < least[best] ? lane : best;
+  int32_t i = which[best];
+  *nearest = (point){thinner->at[0][i], thinner->at[1][i], thinner->at[2][i]};
+  return least[best];
 }
 
 double conic_thinner_reach(const conic_thinner *thinner, const uint64_t *keys, size_t n, double beyond, double reach) {
   point last = thinner->links[0].at; /* that was near; points that follow each other lie together */
   float half_edge = 0.5f * thinner->edge, near2 = half_edge * half_edge * (1.0f - 1e-4f);
+  conic_thinner_rows rows;
   for (size_t i = 0; i < n; i++) {
     point at = point_of(keys[i]);
     double enough = (reach - beyond) * (1.0 - 1e-6); /* surely so, rounded as it may be */
     float enough2 = enough > 0.0 ? (float)(enough * enough) : 0.0f;
     if (squared_distance(at, last) <= enough2)
       continue;
-    float nearest2 = nearest_within_cells(thinner, at, enough2, &last);
+    conic_thinner_beside(thinner, (const float[3]){at.x, at.y, at.z}, 0, &rows);
+    float nearest2 = nearest_in_rows(thinner, &rows, at, &last);
     if (nearest2 <= enough2)
       continue;
-    if (nearest2 > near2)
-      nearest2 = nearest_of_all(thinner, at);
+    if (nearest2 > near2) { /* past the near cells all are looked at: that is seldom */
+      const conic_thinner_rows all = {1, {{0, (uint32_t)thinner->n_chosen}}};
+      nearest2 = nearest_in_rows(thinner, &all, at, &last);
+    }
     double found = sqrt((double)nearest2) + beyond;
     reach = found > reach ? found : reach;
   }
   return reach;
 }
 
-size_t conic_thinner_beside(const conic_thinner *thinner, const float at[3], int is_wide, uint32_t *list, size_t most) {
-  octant o = octant_of(thinner, (point){at[0], at[1], at[2]});
-  size_t n = 0;
-  for (int i = 0; i < (is_wide ? 27 : 8); i++) {
-    const int near[3] = {i & 1 ? o.side[0] : 0, i & 2 ? o.side[1] : 0, i & 4 ? o.side[2] : 0};
-    const int all[3] = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
-    const int *step = is_wide ? all : near;
-    const cell *found =
-        find_cell(thinner, place_of_cell(o.cell[0] + step[0], o.cell[1] + step[1], o.cell[2] + step[2]));
-    for (uint32_t k = found->place == NO_PLACE ? NO_POINT : found->first; k != NO_POINT && n < most;
-         k = thinner->links[k].next)
-      list[n++] = k;
-  }
-  return n;
+float conic_thinner_beside2(const conic_thinner *thinner) {
+  return thinner->edge * thinner->edge * (1.0f - 1e-4f);
+}
+
+uint32_t conic_thinner_first(const conic_thinner *thinner) {
+  return thinner->first;
 }
 
 size_t conic_thinner_numbers(const conic_thinner *thinner, uint32_t *numbers) {
   for (size_t i = 0; i < thinner->n_chosen; i++)
-    numbers[i] = thinner->number[thinner->chosen[i]];
+    numbers[i] = thinner->number[thinner->chosen[thinner->by_cell[i]]];
   return thinner->n_chosen;
 }

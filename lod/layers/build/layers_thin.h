@@ -26,12 +26,28 @@ size_t conic_thinner_choose(conic_thinner *thinner, size_t target, size_t most, 
  * The greatest of several sets is the same in whichever order they come. Several threads may ask. */
 double conic_thinner_reach(const conic_thinner *thinner, const uint64_t *keys, size_t n, double beyond, double reach);
 
-/* Lists up to `most` chosen points about a place, by their numbers in the order in which they were chosen: all within
- * the distance of it, or, `is_wide`, all within twice that. Returns how many. */
-size_t conic_thinner_beside(const conic_thinner *thinner, const float at[3], int is_wide, uint32_t *list, size_t most);
+/* Chosen points by their numbers in the grid's order. */
+typedef struct conic_thinner_row {
+  uint32_t begin, end;
+} conic_thinner_row;
 
-/* numbers[i] is how many chosen points were loaded before the one that was chosen as number i. Returns how many were
- * chosen. */
+enum { CONIC_THINNER_ROWS = 256 }; /* more than points have room for there */
+typedef struct conic_thinner_rows {
+  size_t n;
+  conic_thinner_row list[CONIC_THINNER_ROWS];
+} conic_thinner_rows;
+
+/* Lists chosen points about a place: all within the distance of it, or, `is_wide`, all within twice that. */
+void conic_thinner_beside(const conic_thinner *thinner, const float at[3], int is_wide, conic_thinner_rows *rows);
+
+/* The square of a distance within which all are listed if `is_wide`. */
+float conic_thinner_beside2(const conic_thinner *thinner);
+
+/* The number of the point that was chosen first. */
+uint32_t conic_thinner_first(const conic_thinner *thinner);
+
+/* numbers[i] is how many chosen points were loaded before number i of the grid's order. Returns how many were chosen.
+ */
 size_t conic_thinner_numbers(const conic_thinner *thinner, uint32_t *numbers);
 
 /* --- how far full resolution is from the discs that stand for it (layers_discs.c) --- */
@@ -41,11 +57,18 @@ typedef struct conic_layers_disc {
   float center[3], normal[3], radius;
 } conic_layers_disc;
 
-/* The discs of the points that a thinner has chosen, in the order in which they were; several threads may look. */
+/* The discs of the points that a thinner has chosen, in the grid's order, as columns; CONIC_LANES more of each can be
+ * read. Several threads may look. */
 typedef struct conic_layers_chosen {
   const conic_thinner *thinner;
-  const conic_layers_disc *discs;
+  float *center[3], *normal[3], *radius;
 } conic_layers_chosen;
+
+/* Gives the chosen discs memory, and releases it. Errors: MEMORY. */
+conic_status conic_layers_chosen_create(conic_context *context, const conic_thinner *thinner, size_t n,
+                                        conic_layers_chosen *chosen);
+void conic_layers_chosen_release(conic_context *context, conic_layers_chosen *chosen);
+void conic_layers_chosen_put(const conic_layers_chosen *chosen, size_t i, const conic_layers_disc *disc);
 
 /* The farthest that a disc, at its middle and at 16 places around it, is from the nearest of n discs; where it is no
  * more than `enough`, any number that is not. */
