@@ -38,7 +38,7 @@ struct conic_thinner {
 
 /* A surface of n points meets some n of the (n/3)^1.5 cells around it. */
 static size_t cells_for(size_t n_points) {
-  return 8 * n_points + 64;
+  return 12 * n_points + 64;
 }
 
 size_t conic_thinner_bytes(size_t most_points) {
@@ -162,17 +162,21 @@ static octant octant_of(const conic_thinner *thinner, point at) {
   return o;
 }
 
-/* The places in `cells` of a point's own cell, and of the nearer one on its other side, on each axis; their sum over
- * the axes is a cell's. */
-static void places_of(const conic_thinner *thinner, point at, uint32_t places[3][2]) {
-  const octant o = octant_of(thinner, at);
-  uint32_t stride = 1;
-  for (int axis = 0; axis < 3; axis++) {
-    places[axis][0] = (uint32_t)((o.cell[axis] >> thinner->shift) - thinner->first_cell[axis]) * stride;
-    places[axis][1] =
-        (uint32_t)(((o.cell[axis] + o.side[axis]) >> thinner->shift) - thinner->first_cell[axis]) * stride;
-    stride *= (uint32_t)thinner->cells_on[axis];
-  }
+/* The places in `cells` of a point's own cell, and of the nearer one on its other side, on an axis; their sum over the
+ * axes is a cell's. */
+static inline void places_on(const conic_thinner *thinner, int axis, float coordinate, int32_t stride,
+                             uint32_t places[2]) {
+  float scaled = coordinate * thinner->cells_a_step;
+  int32_t cell = (int32_t)scaled, other = cell + 2 * !(scaled - (float)cell < 0.5f);
+  places[0] = (uint32_t)(((cell + 1) >> thinner->shift) - thinner->first_cell[axis]) * (uint32_t)stride;
+  places[1] = (uint32_t)((other >> thinner->shift) - thinner->first_cell[axis]) * (uint32_t)stride;
+}
+
+static inline void places_of(const conic_thinner *thinner, point at, uint32_t places[3][2]) {
+  const int32_t *n = thinner->cells_on;
+  places_on(thinner, 0, at.x, 1, places[0]);
+  places_on(thinner, 1, at.y, n[0], places[1]);
+  places_on(thinner, 2, at.z, n[0] * n[1], places[2]);
 }
 
 /* Whether a chosen point is nearer than that; it is within half a cell. */
@@ -200,8 +204,9 @@ static size_t throw_darts(conic_thinner *thinner, double distance, size_t most) 
   clear(thinner, distance);
   for (size_t i = 0; i < thinner->n && thinner->n_chosen <= most; i++) {
     uint32_t i_point = thinner->order[i];
-    places_of(thinner, thinner->points[i_point], places);
-    if (!has_near(thinner, thinner->points[i_point], places, below2))
+    const point at = thinner->points[i_point];
+    places_of(thinner, at, places);
+    if (!has_near(thinner, at, places, below2))
       insert(thinner, i_point, places);
   }
   return thinner->n_chosen;
@@ -247,11 +252,29 @@ static double next_distance(double distance, size_t n, size_t target, double *lo
   return guess;
 }
 
+/* Squares of distances are whole numbers. So distances whose squares have the same next one choose the same. */
+typedef struct tries {
+  float below2[MOST_TRIES];
+  size_t n_chosen[MOST_TRIES], n;
+  double thrown; /* what the grid was filled with */
+} tries;
+
+static size_t try_distance(conic_thinner *thinner, double distance, size_t most, tries *t) {
+  float below2 = ceilf((float)(distance * distance));
+  for (size_t i = 0; i < t->n; i++)
+    if (t->below2[i] == below2)
+      return t->n_chosen[i];
+  t->thrown = distance;
+  t->below2[t->n] = below2;
+  return t->n_chosen[t->n++] = throw_darts(thinner, distance, most);
+}
+
 size_t conic_thinner_choose(conic_thinner *thinner, size_t target, size_t most, double *distance, uint8_t *is_chosen) {
   double at = *distance > 1.0 ? *distance : 1.0, best = 0.0, low = 0.0, high = 0.0;
   size_t n = 0, n_best = 0;
+  tries t = {.n = 0};
   for (int i = 0; i < MOST_TRIES; i++) {
-    n = throw_darts(thinner, at, most);
+    n = try_distance(thinner, at, most, &t);
     if (n <= most && (best == 0.0 || off_by(n, target) < off_by(n_best, target))) {
       best = at;
       n_best = n;
@@ -266,9 +289,11 @@ size_t conic_thinner_choose(conic_thinner *thinner, size_t target, size_t most, 
   for (; best == 0.0; at *= 2.0) { /* many that coincide nearly */
     n = throw_darts(thinner, at, most);
     best = n <= most ? at : 0.0;
+    t.thrown = at;
   }
-  if (at != best || n > most)
-    n = throw_darts(thinner, best, most);
+  if (t.thrown != best)
+    throw_darts(thinner, best, most);
+  n = thinner->n_chosen;
   sort_by_cell(thinner);
   memset(is_chosen, 0, thinner->n);
   for (size_t i = 0; i < n; i++)
