@@ -248,11 +248,9 @@ static double outline_in(const conic_layers_node *node, double own) {
 static conic_layers_disc disc_in(const conic_layers_node *node, uint64_t key, const conic_layers_facet *facet,
                                  double quantum) {
   conic_layers_disc disc;
-  double at[3];
-  steps_of(key, at);
   for (int axis = 0; axis < 3; axis++)
-    disc.center[axis] = (float)at[axis];
-  conic_layers_normal_of(facet->normal, disc.normal);
+    disc.center[axis] = (float)conic_layers_step(key, axis);
+  disc.code = facet->normal;
   disc.radius = (float)outline_in(node, (double)conic_layers_size_of(facet->size) / quantum);
   return disc;
 }
@@ -323,7 +321,8 @@ static conic_status find_node_error(conic_context *context, int is_alone, boundi
   if (status == CONIC_OK) {
     size_t n = conic_thinner_numbers(b->thinner, numbers);
     for (size_t i = 0; i < n; i++) {
-      const conic_layers_disc disc = disc_in(node, node->keys[numbers[i]], &node->facets[numbers[i]], b->quantum);
+      conic_layers_disc disc = disc_in(node, node->keys[numbers[i]], &node->facets[numbers[i]], b->quantum);
+      conic_layers_normal_of(disc.code, disc.normal);
       conic_layers_chosen_put(&b->discs, i, &disc);
     }
     node->error = find_most(context, is_alone, b, node->past);

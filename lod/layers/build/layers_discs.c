@@ -2,6 +2,7 @@
 
 #include "core/lanes/lanes.h"
 #include "lod/layers/build/layers_thin.h"
+#include "lod/layers/format/layers_axes.h"
 
 enum { N_CORNERS = 16, N_PLACES = N_CORNERS + CONIC_LANES, MOST_NEAR = 64 };
 
@@ -62,9 +63,12 @@ static float error_from_one(const conic_layers_disc *disc, const conic_layers_di
   return fabsf(height) + disc->radius * turn + (past > 0.0f ? past : 0.0f);
 }
 
-/* The same of several chosen ones. `least`: no place of the disc is nearer to one than that. */
-static lanes errors_from_some(const conic_layers_disc *disc, const conic_layers_chosen *chosen, size_t i,
-                              lanes *least) {
+/* The same of several chosen ones. */
+typedef struct disc_errors {
+  lanes error, least; /* no place of the disc is nearer than that */
+} disc_errors;
+
+CONIC_INLINE disc_errors errors_from_some(const conic_layers_disc *disc, const conic_layers_chosen *chosen, size_t i) {
   const lanes none = lanes_of(0.0f), radius = lanes_of(disc->radius);
   lanes height = none, way2 = none, cosine = none;
   for (int axis = 0; axis < 3; axis++) {
@@ -76,8 +80,8 @@ static lanes errors_from_some(const conic_layers_disc *disc, const conic_layers_
   }
   lanes turned = radius * lanes_sqrt(lanes_max(lanes_of(1.0f) - cosine * cosine, none)),
         own = lanes_load(chosen->radius + i), far = lanes_sqrt(way2), high = lanes_absolute(height);
-  *least = lanes_max(far - radius - own, high - turned);
-  return high + turned + lanes_max(far + radius - own, none);
+  return (disc_errors){high + turned + lanes_max(far + radius - own, none),
+                       lanes_max(far - radius - own, high - turned)};
 }
 
 /* A disc's middle and the corners of a polygon around it, and how far each is from the nearest disc, squared. */
@@ -209,10 +213,9 @@ static float error_from_rows(disc_search *p, int is_wide, float enough, uint32_t
     for (uint32_t i = p->rows.list[i_row].begin; i < p->rows.list[i_row].end; i += CONIC_LANES) {
       const lanes_mask is_in =
           lanes_less_int(ints_of_indices(lanes_ascending(i)), lanes_of_int((int32_t)p->rows.list[i_row].end));
-      lanes nearest,
-          error = lanes_select(is_in, errors_from_some(p->disc, p->chosen, i, &nearest), lanes_of(HUGE_VALF));
-      unsigned may = lanes_bits(is_in) & ~lanes_bits(lanes_less(lanes_of(enough), nearest));
-      lanes_store(errors, error);
+      const disc_errors found = errors_from_some(p->disc, p->chosen, i);
+      unsigned may = lanes_bits(is_in) & ~lanes_bits(lanes_less(lanes_of(enough), is_wide ? found.least : found.error));
+      lanes_store(errors, lanes_select(is_in, found.error, lanes_of(HUGE_VALF)));
       for (; may; may &= may - 1) {
         uint32_t lane = (uint32_t)__builtin_ctz(may);
         if (errors[lane] <= enough) {
@@ -227,7 +230,7 @@ static float error_from_rows(disc_search *p, int is_wide, float enough, uint32_t
           p->near[p->n_near - 1] = held;
         }
       }
-      for (int lane = 0; lane < CONIC_LANES; lane++)
+      for (int lane = 0; lane < CONIC_LANES && is_wide; lane++)
         least = errors[lane] < least ? errors[lane] : least;
     }
   return least;
@@ -254,15 +257,21 @@ static float error_of_disc(disc_search *p, float enough, uint32_t *last) {
 
 double conic_layers_disc_error(const conic_layers_chosen *chosen, const conic_layers_disc *discs, size_t n,
                                double beyond, double error) {
-  disc_search p = {.chosen = chosen, .beside2 = conic_thinner_beside2(chosen->thinner)};
+  disc_search p;
   uint32_t last = conic_thinner_first(chosen->thinner);
+  p.chosen = chosen;
+  p.beside2 = conic_thinner_beside2(chosen->thinner);
+  conic_layers_disc before = disc_of(chosen, last);
   for (size_t i = 0; i < n; i++) {
     float enough = (float)(error - beyond);
-    const conic_layers_disc before = disc_of(chosen, last);
-    p.disc = &discs[i];
-    if (error_from_one(p.disc, &before, p.beside2, 0) <= enough)
+    if (error_from_one(&discs[i], &before, p.beside2, 0) <= enough)
       continue;
+    conic_layers_disc disc = discs[i];
+    if (disc.code)
+      conic_layers_normal_of(disc.code, disc.normal);
+    p.disc = &disc;
     double found = (double)error_of_disc(&p, enough, &last) + beyond;
+    before = disc_of(chosen, last);
     error = found > error ? found : error;
   }
   return error;

@@ -55,6 +55,7 @@ size_t conic_thinner_numbers(const conic_thinner *thinner, uint32_t *numbers);
 /* A sample as it is drawn; lengths in steps of the grid. */
 typedef struct conic_layers_disc {
   float center[3], normal[3], radius;
+  const uint8_t *code; /* of the normal, where that is not known yet; only conic_layers_disc_error allows this */
 } conic_layers_disc;
 
 /* The discs of the points that a thinner has chosen, in the grid's order, as columns; CONIC_LANES more of each can be
