@@ -1,6 +1,7 @@
 /* The bounds of a node: what its samples cover, where they lie, and which way they face. */
 
 #include "core/base/vectors.h"
+#include "core/lanes/lanes.h"
 #include "lod/layers/build/layers_node.h"
 #include "lod/layers/format/layers_axes.h"
 #include "lod/layers/format/layers_key.h"
@@ -29,15 +30,20 @@ static void keep_smallest(float *smallest, int n, float value) {
 }
 
 /* √(area a point) about one of n places: its nearest neighbours' share of the disc that holds them. */
-static double spacing_about(const float (*steps)[3], size_t n, size_t i_place) {
+static double spacing_about(const float *const steps[3], size_t n, size_t i_place) {
   float nearest2[N_NEAREST + 1];
   for (int i = 0; i <= N_NEAREST; i++)
     nearest2[i] = HUGE_VALF;
-  for (size_t i = 0; i < n; i++) { /* itself is the first of the nearest */
-    float x = steps[i][0] - steps[i_place][0], y = steps[i][1] - steps[i_place][1], z = steps[i][2] - steps[i_place][2];
-    float distance2 = x * x + y * y + z * z;
-    if (distance2 < nearest2[N_NEAREST])
-      keep_smallest(nearest2, N_NEAREST + 1, distance2);
+  for (size_t i = 0; i < n; i += CONIC_LANES) { /* itself is the first of the nearest */
+    lanes distance2 = lanes_of(0.0f);
+    for (int axis = 0; axis < 3; axis++) {
+      lanes way = lanes_load(steps[axis] + i) - steps[axis][i_place];
+      distance2 += way * way;
+    }
+    if (lanes_any(lanes_less(distance2, lanes_of(nearest2[N_NEAREST]))))
+      for (size_t lane = 0; lane < CONIC_LANES && i + lane < n; lane++)
+        if (distance2[lane] < nearest2[N_NEAREST])
+          keep_smallest(nearest2, N_NEAREST + 1, distance2[lane]);
   }
   return sqrt(3.14159265358979323846 * (double)nearest2[N_NEAREST] / (double)N_NEAREST);
 }
@@ -59,15 +65,18 @@ static conic_status find_spacing(const conic_layers_plan *plan, const conic_laye
   *spacing = plan->spacing / plan->quantum;
   if (n < LEAST_TO_TELL)
     return CONIC_OK;
-  float(*steps)[3] = conic_memory_allocate(plan->context, n, sizeof *steps);
-  if (!steps)
-    return CONIC_ERROR_MEMORY;
-  for (size_t i = 0; i < n; i++)
+  float *steps[3];
+  size_t n_read = n + CONIC_LANES;
+  conic_status status = conic_memory_allocate_these(plan->context, CONIC_ZEROED(steps[0], n_read),
+                                                    CONIC_ZEROED(steps[1], n_read), CONIC_ZEROED(steps[2], n_read));
+  for (size_t i = 0; i < n && status == CONIC_OK; i++)
     for (int axis = 0; axis < 3; axis++)
-      steps[i][axis] = (float)conic_layers_step(leaf->keys[i], axis);
-  for (size_t i = 0; i < N_PROBES; i++)
-    spacings[i] = spacing_about((const float(*)[3])steps, n, (2 * i + 1) * n / (2 * (size_t)N_PROBES));
-  conic_memory_release(plan->context, steps);
+      steps[axis][i] = (float)conic_layers_step(leaf->keys[i], axis);
+  for (size_t i = 0; i < N_PROBES && status == CONIC_OK; i++)
+    spacings[i] = spacing_about((const float *const *)steps, n, (2 * i + 1) * n / (2 * (size_t)N_PROBES));
+  conic_memory_release_these(plan->context, steps[0], steps[1], steps[2]);
+  if (status != CONIC_OK)
+    return status;
   double found = middle_of(spacings, N_PROBES);
   *spacing = found > 0.0 ? found : *spacing;
   return CONIC_OK;

@@ -55,7 +55,7 @@ static double part_in_order(const conic_layers_chosen *standing, const conic_lay
 
 static void check_sheet(conic_context *context, uint64_t scene) {
   static uint64_t keys[N];
-  static conic_layers_disc discs[N], drawn[N], standing_discs[N];
+  static conic_layers_disc discs[N], drawn[N];
   static uint8_t is_chosen[N];
   static uint32_t ranks[N];
   conic_thinner *thinner;
@@ -72,9 +72,10 @@ static void check_sheet(conic_context *context, uint64_t scene) {
   }
   size_t n = conic_thinner_numbers(thinner, ranks);
   CHECK(n == n_drawn && n > STANDING / 2);
+  conic_layers_chosen standing;
+  CHECK_OK(conic_layers_chosen_create(context, thinner, n, &standing));
   for (size_t k = 0; k < n; k++)
-    standing_discs[k] = drawn[ranks[k]];
-  const conic_layers_chosen standing = {thinner, standing_discs};
+    conic_layers_chosen_put(&standing, k, &drawn[ranks[k]]);
   double part = part_in_order(&standing, discs, 0, N), most = 0.0;
   for (size_t i = 0; i < N; i++) {
     double own = conic_layers_disc_error(&standing, &discs[i], 1, 0.0, 0.0);
@@ -83,6 +84,7 @@ static void check_sheet(conic_context *context, uint64_t scene) {
   CHECK(part == most && part > 0.0);
   for (size_t i = 1; i < N_ORDERS; i++)
     CHECK(part_in_order(&standing, discs, i * N / N_ORDERS, 1 + i) == part);
+  conic_layers_chosen_release(context, &standing);
   conic_thinner_destroy(context, thinner);
 }
 
