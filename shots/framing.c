@@ -1,5 +1,6 @@
 /* A camera that sees all of a source. */
 
+#include "core/image/framing.h"
 #include "conic/shot.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
@@ -9,7 +10,7 @@ void conic_shot_framing_init_sized(conic_shot_framing *framing, size_t size) {
   conic_shot_framing own;
   memset(&own, 0, sizeof own);
   own.size = sizeof own;
-  own.finds_up = own.finds_elevation = own.finds_near = own.n_turns = 1;
+  own.finds_up = own.finds_elevation = own.finds_azimuth = own.finds_near = own.n_turns = 1;
   conic_framing_init(&own.framing);
   conic_options_give(framing, size, &own);
 }
@@ -34,17 +35,43 @@ static double elevation_for(const conic_source_scale *scale, const double up[3])
 /* A pinhole so far off that what it frames is what parallel rays do. */
 static const double parallel_fov_deg = 0.5;
 
+/* Turns the camera before a slope or a facade, by steps, where it would be seen from beside or from behind. */
+static conic_status turn_to_front(conic_source *source, conic_framing *framing) {
+  static const double least_slope = 0.25, least_cosine = 0.5, good_cosine = 0.85, step_deg = 15.0;
+  enum { MOST_STEPS = 12 };
+  conic_framing level = *framing;
+  double front[3], rows[3][3];
+  conic_status status = conic_source_front(source, front);
+  level.elevation_deg = 0.0;
+  conic_framing_rotation(&level, rows);
+  double beside = conic_dot(front, rows[0]), towards = -conic_dot(front, rows[2]);
+  double slope = sqrt(beside * beside + towards * towards);
+  if (status != CONIC_OK || slope < least_slope || towards >= least_cosine * slope)
+    return status;
+  for (int i = 0; i < MOST_STEPS && towards < good_cosine * slope; i++) {
+    level.azimuth_deg += beside > 0.0 ? step_deg : -step_deg;
+    conic_framing_rotation(&level, rows);
+    towards = -conic_dot(front, rows[2]);
+  }
+  framing->azimuth_deg = level.azimuth_deg;
+  return CONIC_OK;
+}
+
 /* What of the framing is found, and the turn. */
-static conic_framing settle(const conic_source_scale *scale, const conic_shot_framing *given) {
-  conic_framing framing = given->framing;
+static conic_status settle(conic_source *source, const conic_shot_framing *given, conic_framing *framing) {
+  const int stands_within = given->has_eye || given->kind >= CONIC_CAMERA_EQUIRECTANGULAR;
+  conic_status status = CONIC_OK;
+  *framing = given->framing;
   if (given->finds_up)
-    memcpy(framing.up, scale->up, sizeof framing.up);
-  if (given->finds_elevation && (given->has_eye || given->kind >= CONIC_CAMERA_EQUIRECTANGULAR))
-    framing.elevation_deg = 0.0; /* of who stands in it */
+    memcpy(framing->up, source->scale.up, sizeof framing->up);
+  if (given->finds_elevation && stands_within)
+    framing->elevation_deg = 0.0;
   else if (given->finds_elevation && !given->is_plain)
-    framing.elevation_deg = elevation_for(scale, framing.up);
-  framing.azimuth_deg += 360.0 * (double)given->i_turn / (double)given->n_turns;
-  return framing;
+    framing->elevation_deg = elevation_for(&source->scale, framing->up);
+  if (given->finds_azimuth && !stands_within && !given->is_plain)
+    status = turn_to_front(source, framing);
+  framing->azimuth_deg += 360.0 * (double)given->i_turn / (double)given->n_turns;
+  return status;
 }
 
 static void stand_at(const double eye[3], conic_camera *camera) {
@@ -85,14 +112,17 @@ conic_status conic_shot_frame(conic_source *source, const conic_shot_framing *gi
   if (given && !conic_options_take(&own, given))
     return conic_fail(source->context, CONIC_ERROR_ARGUMENT, "%s: the framing was not initialised", source->name);
   const conic_source_scale *scale = conic_source_measure(source);
-  const conic_framing framing = settle(scale, &own);
+  conic_framing framing;
+  conic_status status = settle(source, &own, &framing);
+  if (status != CONIC_OK)
+    return status;
   conic_framing pinhole = framing;
   if (own.kind == CONIC_CAMERA_ORTHOGRAPHIC)
     pinhole.fov_deg = parallel_fov_deg;
   double near_z = HUGE_VAL;
-  conic_status status = own.is_plain ? conic_source_frame(source, &pinhole, &shot->camera)
-                                     : conic_source_fit(source, &pinhole, shot->render.kernel.cutoff, own.n_turns,
-                                                        &shot->camera, &near_z);
+  status = own.is_plain
+               ? conic_source_frame(source, &pinhole, &shot->camera)
+               : conic_source_fit(source, &pinhole, shot->render.kernel.cutoff, own.n_turns, &shot->camera, &near_z);
   if (status != CONIC_OK)
     return status;
   project(scale, &own, &framing, &shot->camera);

@@ -52,19 +52,44 @@ static conic_status find_outline(conic_source *source, const conic_camera *camer
   return status;
 }
 
-conic_status conic_source_stand(conic_source *source) {
-  conic_source_scale *scale = &source->scale;
+static conic_status look_around(conic_source *source, conic_up_basis *basis) {
   conic_camera camera;
   conic_drawing outline;
-  if (scale->up_basis != CONIC_UP_HABIT)
-    return CONIC_OK;
   conic_status status = conic_source_frame(source, NULL, &camera);
   if (status == CONIC_OK)
     status = find_outline(source, &camera, 1.5f, &outline);
   if (status == CONIC_OK)
-    status = conic_upright_look(source->context, &source->shares, &outline, &scale->up_basis);
+    status = conic_upright_look(source->context, &source->shares, &outline, basis, source->fronts);
+  source->has_front = status == CONIC_OK;
+  return status;
+}
+
+conic_status conic_source_stand(conic_source *source) {
+  conic_source_scale *scale = &source->scale;
+  conic_status status = CONIC_OK;
+  if (scale->up_basis != CONIC_UP_HABIT)
+    return CONIC_OK;
+  status = look_around(source, &scale->up_basis);
   if (scale->up_basis != CONIC_UP_HABIT)
     memcpy(scale->up, (const double[3]){0.0, 0.0, 1.0}, sizeof scale->up);
+  return status;
+}
+
+/* Points over land; their normals, which may be guessed, are turned up. */
+static int is_ground(const conic_source_scale *scale) {
+  return !scale->n_triangles && scale->up[2] > 0.0 && scale->up_basis <= CONIC_UP_OPEN;
+}
+
+conic_status conic_source_front(conic_source *source, double front[3]) {
+  conic_up_basis basis;
+  conic_status status = CONIC_OK;
+  memset(front, 0, 3 * sizeof *front);
+  if (conic_source_gaussians(source))
+    return CONIC_OK;
+  if (!source->has_front)
+    status = look_around(source, &basis);
+  if (status == CONIC_OK)
+    memcpy(front, source->fronts[is_ground(&source->scale)], 3 * sizeof *front);
   return status;
 }
 

@@ -23,7 +23,8 @@ static conic_status find_upright(conic_source *source, conic_splats *splats, con
   const conic_drawing drawing = {splats ? splats : &no_splats, triangles ? triangles : &no_triangles};
   if (scale->up_basis != CONIC_UP_HABIT)
     return CONIC_OK;
-  conic_status status = conic_upright_look(source->context, &source->shares, &drawing, &scale->up_basis);
+  conic_status status =
+      conic_upright_look(source->context, &source->shares, &drawing, &scale->up_basis, source->fronts);
   if (status == CONIC_OK && scale->up_basis != CONIC_UP_HABIT)
     memcpy(scale->up, (const double[3]){0.0, 0.0, 1.0}, sizeof scale->up);
   return status;

@@ -99,6 +99,8 @@ struct conic_source {
   unsigned traits, no_traits;   /* bits of conic_source_trait: those that it has, and those that it surely lacks */
   conic_splats outline;         /* from conic_source_take_samples, if it was called */
   int has_surfaces_outline;     /* and that of the surfaces among its Gaussians */
+  int has_front;                /* the next is known: */
+  double fronts[2][3];          /* by conic_upright_look */
   double samples_until;         /* by the clock: after this nothing is read for the outline; 0: no limit */
   int only_samples;             /* of layered clouds, in the next picture: coarse places show some of their samples */
   double tolerance;             /* how far splats made of meshes are off these; 0: there are none */
@@ -109,6 +111,10 @@ struct conic_source {
 extern const conic_source_kind conic_source_kind_drawing, conic_source_kind_octree, conic_source_kind_layers,
     conic_source_kind_hybrid, conic_source_kind_patches, conic_source_kind_gaussians, conic_source_kind_scenes,
     conic_source_kind_together, conic_source_kind_shared;
+
+/* The mean of the normals by area, of points over land turned up; 0 where they say nothing, as of Gaussians. Looks at
+ * the source once. Collective where it is shared. Errors: as conic_source_stand. */
+conic_status conic_source_front(conic_source *source, double front[3]);
 
 /* Adds the object "skipped" to a source's facts. */
 void conic_facts_add_repairs(conic_facts *facts, const conic_repairs *repairs);

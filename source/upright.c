@@ -61,6 +61,7 @@ typedef struct samples {
  * that has nothing opposite to it, mirrored in the middle. */
 typedef struct shape {
   double low[3], high[3], extent[3], greatest, mean[3], uneven[3], total;
+  double raised[3]; /* the mean of the normals with all of them turned to +z */
 } shape;
 
 static void add_patch(samples *s, const double place[3], const double area[3]) {
@@ -213,13 +214,16 @@ static int measure_shape(const samples *s, presence *of, shape *m) {
   memset(m, 0, sizeof *m);
   for (size_t i = 0; i < s->count; i++) {
     m->total += conic_length(s->area[i]);
-    for (int axis = 0; axis < 3; axis++)
+    for (int axis = 0; axis < 3; axis++) {
       m->mean[axis] += s->area[i][axis];
+      m->raised[axis] += s->area[i][2] < 0.0 ? -s->area[i][axis] : s->area[i][axis];
+    }
   }
   find_extent(s, m->low, m->high);
   conic_subtract(m->high, m->low, m->extent);
   for (int axis = 0; axis < 3; axis++) {
     m->mean[axis] /= m->total;
+    m->raised[axis] /= m->total;
     m->greatest = m->extent[axis] > m->greatest ? m->extent[axis] : m->greatest;
   }
   if (!(m->total > 0.0) || !(m->greatest > 0.0))
@@ -273,7 +277,7 @@ static conic_up_basis judge_shape(const samples *s, const shape *m, int is_mesh)
 }
 
 conic_status conic_upright_look(conic_context *context, const conic_splats_shares *shares, const conic_drawing *drawing,
-                                conic_up_basis *basis) {
+                                conic_up_basis *basis, double fronts[2][3]) {
   size_t most = 3 * (size_t)MOST_SAMPLES + 2;
   samples s = {.place = conic_memory_allocate(context, most, sizeof *s.place),
                .area = conic_memory_allocate(context, most, sizeof *s.area),
@@ -283,12 +287,16 @@ conic_status conic_upright_look(conic_context *context, const conic_splats_share
   conic_status status =
       conic_team_agree(shares->team, s.place && s.area && s.sorted && cells ? CONIC_OK : CONIC_ERROR_MEMORY);
   *basis = CONIC_UP_HABIT;
+  memset(fronts, 0, 2 * sizeof *fronts);
   if (status == CONIC_OK) {
     take_splat_samples(&s, shares, drawing->splats);
     int are_enough = s.count + drawing->triangles->count >= LEAST_SAMPLES;
     take_triangle_samples(&s, drawing->triangles);
-    if (are_enough && s.count && measure_shape(&s, cells, &found))
+    if (are_enough && s.count && measure_shape(&s, cells, &found)) {
       *basis = judge_shape(&s, &found, drawing->triangles->count > 0);
+      memcpy(fronts[0], found.mean, sizeof found.mean);
+      memcpy(fronts[1], found.raised, sizeof found.raised);
+    }
   }
   conic_memory_release_these(context, s.place, s.area, s.sorted, cells);
   return status;

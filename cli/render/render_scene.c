@@ -157,6 +157,7 @@ static conic_shot_framing framing_of(const cli_render_job *job, int i_frame) {
   framing.framing = job->framing;
   framing.kind = (conic_camera_kind)job->projection;
   framing.finds_up = !job->is_up_given;
+  framing.finds_azimuth = !job->is_azimuth_given;
   framing.finds_elevation = !job->is_elevation_given;
   framing.is_plain = job->is_plain;
   framing.has_eye = job->is_eye_given;

@@ -74,7 +74,7 @@ typedef struct cli_render_job {
   size_t i_view;         /* of these, the one that is drawn, or was last: */
   conic_camera camera;
   conic_framing framing;
-  int is_up_given, is_elevation_given;
+  int is_up_given, is_azimuth_given, is_elevation_given;
   int projection; /* of the framed camera: a conic_camera_kind */
   double eye[3];  /* --eye: where it stands */
   int is_eye_given;

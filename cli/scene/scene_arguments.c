@@ -93,7 +93,7 @@ static int parse_view(const char *text, void *value) {
   job->is_view_side = 0;
   for (size_t i = 0; i < sizeof sides / sizeof *sides; i++)
     if (strcmp(sides[i].name, text) == 0) {
-      job->is_view_side = job->is_elevation_given = 1;
+      job->is_view_side = job->is_azimuth_given = job->is_elevation_given = 1;
       job->framing.azimuth_deg = sides[i].azimuth_deg;
       job->framing.elevation_deg = sides[i].elevation_deg;
     }
@@ -226,8 +226,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso, from a corner",
        .parse = parse_view, .is_usual = 1, .acts = {.needs = CLI_FACT(CAMERAS), .apart = CLI_FACT(MAP)}},
       {"azimuth", CLI_NUMBER, &view->azimuth_deg, "DEG",
-       "the camera's place around the scene: 0 in front, 90 to the right of that [30]", -1e6, 1e6, .is_usual = 1,
-       .acts = {.needs = CLI_FACT(FRAMED)}},
+       "the camera's place around the scene: 0 in front, 90 to the right of that [30, or before what faces elsewhere]",
+       -1e6, 1e6, .is_given = &job->is_azimuth_given, .is_usual = 1, .acts = {.needs = CLI_FACT(FRAMED)}},
       {"elevation", CLI_NUMBER, &view->elevation_deg, "DEG",
        "the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat, and surveys]", -90, 90,
        .is_given = &job->is_elevation_given, .is_usual = 1, .acts = {.needs = CLI_FACT(FRAMED)}},

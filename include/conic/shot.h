@@ -139,7 +139,7 @@ typedef struct conic_shot_framing {
   double eye[3];
   int i_turn, n_turns; /* picture i_turn of n_turns around the scene, whose cameras differ in the azimuth alone */
   int finds_near;      /* 1: near_z becomes less where it would cut off what is framed */
-  int reserved_int;
+  int finds_azimuth;   /* 1: turned where a slope or a facade would be seen from behind or beside */
 } conic_shot_framing;
 
 /* 1024 × 1024, a perspective camera at 30 degrees that finds all the rest. */

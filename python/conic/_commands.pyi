@@ -197,7 +197,8 @@ def render(
     view: which of the cameras of --camera: a number from 0, the name of an image with or without its folder and
         ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
         from a corner
-    azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
+    azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30, or before what faces
+        elsewhere]
     elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat, and
         surveys]
     fov: field of view across the shorter side [40]
@@ -399,7 +400,8 @@ def verify(
     view: which of the cameras of --camera: a number from 0, the name of an image with or without its folder and
         ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
         from a corner
-    azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
+    azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30, or before what faces
+        elsewhere]
     elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat, and
         surveys]
     fov: field of view across the shorter side [40]
@@ -610,7 +612,8 @@ def judge(
     view: which of the cameras of --camera: a number from 0, the name of an image with or without its folder and
         ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
         from a corner
-    azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
+    azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30, or before what faces
+        elsewhere]
     elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat, and
         surveys]
     fov: field of view across the shorter side [40]
@@ -777,7 +780,8 @@ def project(
     view: which of the cameras of --camera: a number from 0, the name of an image with or without its folder and
         ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
         from a corner
-    azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
+    azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30, or before what faces
+        elsewhere]
     elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat, and
         surveys]
     fov: field of view across the shorter side [40]
@@ -987,7 +991,8 @@ def judge_intermediates(
     view: which of the cameras of --camera: a number from 0, the name of an image with or without its folder and
         ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
         from a corner
-    azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
+    azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30, or before what faces
+        elsewhere]
     elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat, and
         surveys]
     fov: field of view across the shorter side [40]
@@ -1173,7 +1178,8 @@ def explain(
     view: which of the cameras of --camera: a number from 0, the name of an image with or without its folder and
         ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
         from a corner
-    azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
+    azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30, or before what faces
+        elsewhere]
     elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat, and
         surveys]
     fov: field of view across the shorter side [40]
@@ -1828,7 +1834,8 @@ def gradient(
     view: which of the cameras of --camera: a number from 0, the name of an image with or without its folder and
         ending, or all [the only one]; without --camera a side: front, back, left, right, top, bottom, or iso,
         from a corner
-    azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30]
+    azimuth: the camera's place around the scene: 0 in front, 90 to the right of that [30, or before what faces
+        elsewhere]
     elevation: the camera's height, from -90 (below) over 0 to 90 (above) [15; 35 for what lies flat, and
         surveys]
     fov: field of view across the shorter side [40]
