@@ -72,7 +72,7 @@ conic_status conic_mesh_bound(conic_context *context, double cutoff, double cosi
 conic_status conic_estimate_spacings(conic_context *context, const conic_neighbourhood *neighbourhood,
                                      double *spacings);
 
-/* Gives the RAW points their axes, from their neighbours and the spacings: SPREAD, ISOLATED or FAILED.
- * Errors: CANCELLED. */
+/* Gives the RAW points their axes, from their neighbours and the spacings, which it uses up: SPREAD, ISOLATED or
+ * FAILED. Errors: CANCELLED. */
 conic_status conic_estimate_from_neighbours(conic_context *context, conic_estimate *estimate,
-                                            const conic_neighbourhood *neighbourhood, const double *spacings);
+                                            const conic_neighbourhood *neighbourhood, double *spacings);

@@ -29,6 +29,12 @@
  * this one at least. */
 #define ROUGHNESS 0.35
 #define LEAST_REACH 1.2
+/* Where dots are looked for, an outline reaches no farther than so many times the median of the neighbours': a few
+ * points that might be a surface among dots, which are smaller, are no blobs. */
+#define GREATEST_EXCESS 2.0
+/* A dot, which has no surface to close, and anything where most points are dots, is no larger than so many usual dots.
+ */
+#define GREATEST_DOT 3.0
 /* The median is found of so many. */
 enum { MEDIAN_SAMPLES = 20000 };
 /* The density comes from the nearest few neighbours on the surface, and from all. */
@@ -104,17 +110,19 @@ conic_status conic_estimate_spacings(conic_context *context, const conic_neighbo
   return conic_slots_share(context, neighbourhood->tree.n_slots, space_slots, &work, 0.6, 0.7, &column, 1);
 }
 
+/* Puts a value where it belongs among n sorted ones. */
+static void sort_in(double *sorted, size_t n, double value) {
+  for (; n > 0 && sorted[n - 1] > value; n--)
+    sorted[n] = sorted[n - 1];
+  sorted[n] = value;
+}
+
 /* The upper median of the neighbours' spacings. */
 static double median_spacing(const tangent_origin *p, const double *spacings) {
   double sorted[CONIC_MAX_NEIGHBOURS];
   size_t n = p->neighbourhood->n_neighbours;
-  for (size_t i = 0; i < n; i++) {
-    double value = spacings[p->list[i]];
-    size_t at = i;
-    for (; at > 0 && sorted[at - 1] > value; at--)
-      sorted[at] = sorted[at - 1];
-    sorted[at] = value;
-  }
+  for (size_t i = 0; i < n; i++)
+    sort_in(sorted, i, spacings[p->list[i]]);
   return sorted[n / 2];
 }
 
@@ -232,8 +240,10 @@ static double bounded_reach(const tangent_origin *p, double reach, double usual)
 typedef struct spread_work {
   conic_estimate *estimate;
   const conic_neighbourhood *neighbourhood;
-  const double *spacings;
+  double *spacings;
   double usual_reach; /* of a cell of the median spacing */
+  double usual_dot;   /* the longer axis of most dots … */
+  int are_dots;       /* … which most points are */
 } spread_work;
 
 static void spread_point(const spread_work *work, size_t point, size_t slot) {
@@ -284,26 +294,100 @@ static void spread_duplicates(void *data, size_t begin, size_t end) {
       spread_point(work, point, work->neighbourhood->tree.slot_of_point[point]);
 }
 
-static conic_status find_usual_reach(conic_context *context, spread_work *work) {
-  const conic_neighbourhood *neighbourhood = work->neighbourhood;
-  size_t stride = 1 + neighbourhood->tree.n_slots / MEDIAN_SAMPLES, n = 0;
+static int is_spread(const conic_estimate *estimate, size_t point) {
+  return estimate->states[point] == CONIC_POINT_SPREAD || estimate->states[point] == CONIC_POINT_ISOLATED;
+}
+
+static double longer_axis(const conic_estimate *estimate, size_t point) {
+  double u[3], v[3];
+  conic_vector_at(estimate->tangent_u, point, u);
+  conic_vector_at(estimate->tangent_v, point, v);
+  double u2 = conic_dot(u, u), v2 = conic_dot(v, v);
+  return sqrt(u2 > v2 ? u2 : v2);
+}
+
+static double spacing_at(const spread_work *work, size_t slot) {
+  return work->neighbourhood->flags[slot] & CONIC_SLOT_LISTED ? work->spacings[slot] : 0.0;
+}
+
+static double dot_at(const spread_work *work, size_t slot) {
+  size_t point = work->neighbourhood->tree.point_of_slot[slot];
+  return is_spread(work->estimate, point) && work->estimate->dot[point] != 0.0f ? longer_axis(work->estimate, point)
+                                                                                : 0.0;
+}
+
+/* The upper median of what some slots have that is above 0; without any, all there is. And the part that has some. */
+static conic_status find_median(conic_context *context, const spread_work *work,
+                                double (*value_at)(const spread_work *work, size_t slot), double *median,
+                                double *part) {
+  size_t n_slots = work->neighbourhood->tree.n_slots, stride = 1 + n_slots / MEDIAN_SAMPLES, n = 0;
   double *sorted = conic_memory_allocate(context, 2 * MEDIAN_SAMPLES, sizeof *sorted);
   if (!sorted)
     return CONIC_ERROR_MEMORY;
-  for (size_t slot = 0; slot < neighbourhood->tree.n_slots; slot += stride)
-    if (neighbourhood->flags[slot] & CONIC_SLOT_LISTED)
-      sorted[n++] = work->spacings[slot];
+  for (size_t slot = 0; slot < n_slots; slot += stride)
+    if ((sorted[n] = value_at(work, slot)) > 0.0)
+      n++;
   qsort(sorted, n, sizeof *sorted, conic_compare_doubles);
-  work->usual_reach = n ? CELL_RADIUS * sorted[n / 2] : HUGE_VAL;
+  *median = n ? sorted[n / 2] : HUGE_VAL;
+  *part = (double)n * (double)stride / (double)n_slots;
   conic_memory_release(context, sorted);
   return CONIC_OK;
 }
 
+/* The part of its size to which the neighbours' sizes cut a slot's outline: 1 for most. */
+static double part_left(const spread_work *work, size_t slot) {
+  const conic_neighbourhood *neighbourhood = work->neighbourhood;
+  const uint32_t *list = conic_neighbourhood_of(neighbourhood, slot), *points = neighbourhood->tree.point_of_slot;
+  double sorted[CONIC_MAX_NEIGHBOURS];
+  size_t n = 0;
+  for (size_t i = 0; i < neighbourhood->n_neighbours; i++)
+    if (is_spread(work->estimate, points[list[i]]))
+      sort_in(sorted, n++, longer_axis(work->estimate, points[list[i]]));
+  double most = n ? GREATEST_EXCESS * sorted[n / 2] : HUGE_VAL, own = longer_axis(work->estimate, points[slot]);
+  if ((work->are_dots || work->estimate->dot[points[slot]] != 0.0f) && most > GREATEST_DOT * work->usual_dot)
+    most = GREATEST_DOT * work->usual_dot;
+  return own > most ? most / own : 1.0;
+}
+
+static void compare_slots(void *data, size_t begin, size_t end) {
+  const spread_work *work = data;
+  for (size_t slot = begin; slot < end; slot++)
+    if (is_spread(work->estimate, work->neighbourhood->tree.point_of_slot[slot]))
+      work->spacings[slot] = part_left(work, slot);
+}
+
+static void cut_points(void *data, size_t begin, size_t end) {
+  const spread_work *work = data;
+  const conic_estimate *estimate = work->estimate;
+  for (size_t point = begin; point < end; point++)
+    if (is_spread(estimate, point)) {
+      float part = (float)work->spacings[work->neighbourhood->tree.slot_of_point[point]];
+      for (int axis = 0; axis < 3; axis++) {
+        estimate->tangent_u[axis][point] *= part;
+        estimate->tangent_v[axis][point] *= part;
+      }
+    }
+}
+
+/* Bounds the outlines by their neighbours'; the spacings are used up. */
+static conic_status bound_by_neighbours(conic_context *context, spread_work *work) {
+  const conic_neighbours *tree = &work->neighbourhood->tree;
+  const conic_team_column column = {work->spacings, sizeof *work->spacings};
+  double part = 0.0;
+  conic_status status = find_median(context, work, dot_at, &work->usual_dot, &part);
+  work->are_dots = part > 0.5;
+  if (status == CONIC_OK)
+    status = conic_slots_share(context, tree->n_slots, compare_slots, work, 1.0, 1.0, &column, 1);
+  return status == CONIC_OK ? conic_slots_for(context, tree->n_points, cut_points, work, 1.0, 1.0) : status;
+}
+
 conic_status conic_estimate_from_neighbours(conic_context *context, conic_estimate *estimate,
-                                            const conic_neighbourhood *neighbourhood, const double *spacings) {
-  spread_work work = {estimate, neighbourhood, spacings, HUGE_VAL};
+                                            const conic_neighbourhood *neighbourhood, double *spacings) {
+  spread_work work = {estimate, neighbourhood, spacings, HUGE_VAL, HUGE_VAL, 0};
+  double part;
   if (estimate->dot) {
-    conic_status found = find_usual_reach(context, &work);
+    conic_status found = find_median(context, &work, spacing_at, &work.usual_reach, &part);
+    work.usual_reach *= CELL_RADIUS;
     if (found != CONIC_OK)
       return found;
   }
@@ -318,5 +402,5 @@ conic_status conic_estimate_from_neighbours(conic_context *context, conic_estima
       conic_slots_share(context, neighbourhood->tree.n_slots, spread_slots, &work, 0.7, 0.98, columns, 8);
   if (status == CONIC_OK && neighbourhood->tree.n_duplicates)
     status = conic_slots_for(context, neighbourhood->tree.n_points, spread_duplicates, &work, 0.98, 1.0);
-  return status;
+  return status == CONIC_OK && estimate->dot ? bound_by_neighbours(context, &work) : status;
 }

@@ -21,6 +21,10 @@ enum {
 /* Neighbours lie in a plane where their variances, in order, are at least and at most such shares of the one before. */
 static const double least_width = 0.1, most_thickness = 0.4;
 
+/* A spacing is no greater than so many times both the node's median and the neighbours': the ends of a few points apart
+ * from the others are no blobs. */
+static const float most_excess = 2.0f;
+
 #define NO_CELL UINT32_MAX
 
 /* Cells of one size: runs of the points, found by a hash of their code. */
@@ -205,6 +209,24 @@ static conic_status find_median(conic_context *context, const conic_node_shape *
   return CONIC_OK;
 }
 
+/* Bounds the spacings that are far above the median by those of the neighbours, in the last table's cells. */
+static void bound_spacings(const shaping *s, float median) {
+  const conic_node_shape *shape = s->shape;
+  for (uint32_t i = 0; i < shape->n; i++) {
+    uint32_t runs[27][2];
+    nearest_points found;
+    float near_it[NEAREST];
+    if (shape->spacing[i] <= most_excess * median)
+      continue;
+    find_nearest_points(shape, i, runs, list_runs(s, shape->keys[i] >> s->table.shift, runs), &found);
+    for (int k = 0; k < found.n; k++)
+      near_it[k] = shape->spacing[found.point[k]];
+    float usual = found.n ? conic_float_of_rank(near_it, (size_t)found.n, (size_t)found.n / 2) : median;
+    float most = most_excess * (usual > median ? usual : median);
+    shape->spacing[i] = shape->spacing[i] < most ? shape->spacing[i] : most;
+  }
+}
+
 conic_status conic_node_shape_find(conic_context *context, const conic_node_shape *shape, float *median) {
   shaping s = {.shape = shape};
   size_t n = shape->n, n_places = 64;
@@ -228,6 +250,8 @@ conic_status conic_node_shape_find(conic_context *context, const conic_node_shap
   }
   if (status == CONIC_OK)
     status = find_median(context, shape, median);
+  if (status == CONIC_OK && n > 1)
+    bound_spacings(&s, *median);
   conic_memory_release_these(context, s.table.first, s.table.cell_at, s.is_done);
   return status;
 }

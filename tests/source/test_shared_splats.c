@@ -18,6 +18,7 @@ typedef struct findings {
   double bounds[2][3], length, near_z;
   conic_camera camera;
   conic_up_basis basis;
+  double fronts[2][3];
 } findings;
 
 typedef struct shared_case {
@@ -80,7 +81,7 @@ static findings find_together(conic_context *context, const conic_splats_shares 
   CHECK(conic_shares_bounds(shares, splats, found.bounds[0], found.bounds[1]) == COUNT - (COUNT + 996) / 1000);
   CHECK_OK(conic_shares_length(context, shares, splats, &found.length));
   CHECK_OK(conic_drawing_frame_shared(context, shares, &drawing, 1.5f, &framing, 3, &found.camera, &found.near_z));
-  CHECK_OK(conic_upright_look(context, shares, &drawing, &found.basis));
+  CHECK_OK(conic_upright_look(context, shares, &drawing, &found.basis, found.fronts));
   return found;
 }
 

@@ -143,6 +143,29 @@ static void check_what_dots_get(conic_context *context) {
   conic_model_release(context, &model);
 }
 
+static double largest(const conic_splats *points, size_t begin, size_t end) {
+  double greatest = 0.0;
+  for (size_t i = begin; i < end; i++) {
+    double a = outlines_get(points, i).a;
+    greatest = a > greatest ? a : greatest;
+  }
+  return greatest;
+}
+
+/* A tree's sparse top is no heap of blobs; nor are a few points, as if of a surface, among its leaves. */
+static void check_sizes_are_alike(conic_context *context) {
+  conic_model model = outlines_model(context, N + 400, 0);
+  uint64_t state = 9;
+  add_in_ball(&model, &state, N, 0.0);
+  for (int i = 0; i < 400; i++)
+    outlines_add(&model, 40 + 12.0 * (i % 20), 50 + 12.0 * (i / 20), 60.0 + (i < 200 ? 0.0 : uniform(&state, 0, 60)));
+  find_dots(context, &model);
+  double usual = largest(&model.points, 0, N);
+  CHECK(usual > 0.3 && usual < 1.0);
+  CHECK(largest(&model.points, N, N + 400) < 3.1 * 0.4);
+  conic_model_release(context, &model);
+}
+
 /* The same for any number of threads; a point far from all is one; nothing is without the option. */
 static void check_option(conic_context *context) {
   conic_context *alone = check_context(1);
@@ -300,6 +323,7 @@ int main(void) {
   check_tree(context);
   check_wire(context);
   check_what_dots_get(context);
+  check_sizes_are_alike(context);
   check_option(context);
   check_facing(context);
   check_column(context);
