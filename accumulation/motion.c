@@ -186,7 +186,7 @@ static void follow_all(const double all[3][4], double matrix[3][4]) {
                             (column == 3 ? all[row][3] : 0.0);
 }
 
-conic_status conic_motion_apply(conic_motion *motion, conic_source *source, double frame) {
+conic_status conic_motion_find(conic_motion *motion, double frame, const conic_source_pose **poses, size_t *n) {
   const two_keys of_all = find_keys(motion, CONIC_MOTION_ALL, 0, frame);
   conic_status status = CONIC_OK;
   for (size_t i = 0; i < motion->n_inputs && status == CONIC_OK; i++) {
@@ -206,5 +206,14 @@ conic_status conic_motion_apply(conic_motion *motion, conic_source *source, doub
     }
     find_shapes(motion, (int)i, frame, pose);
   }
-  return status == CONIC_OK ? conic_source_move(source, motion->poses, motion->n_inputs) : status;
+  *poses = motion->poses;
+  *n = motion->n_inputs;
+  return status;
+}
+
+conic_status conic_motion_apply(conic_motion *motion, conic_source *source, double frame) {
+  const conic_source_pose *poses;
+  size_t n;
+  conic_status status = conic_motion_find(motion, frame, &poses, &n);
+  return status == CONIC_OK ? conic_source_move(source, poses, n) : status;
 }

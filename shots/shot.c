@@ -1,6 +1,7 @@
 #include "conic/gaussian_judge.h"
 #include "core/base/color.h"
 #include "shots/backdrop.h"
+#include "shots/motion_plane.h"
 #include "shots/stage.h"
 #include "source/source_kind.h"
 #include "source/surfaces_among.h"
@@ -110,6 +111,8 @@ conic_status conic_shot_work_draw(conic_shot_work *work, conic_image *image, con
     conic_backdrop_put(shot->backdrop_top, shot->backdrop_bottom, conic_exposure_factor(shot->render.exposure), image);
   if (status == CONIC_OK && conic_work_has_picture(work))
     status = conic_image_locate(work->context, &camera, shot->view.samples, image);
+  if (status == CONIC_OK && conic_work_has_picture(work))
+    status = conic_motion_plane_find(work, &camera, shot->view.samples, image);
   if (status == CONIC_OK && conic_work_has_picture(work))
     status = find_doubts(work, &camera, image);
   if (outcome)

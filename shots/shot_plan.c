@@ -6,6 +6,7 @@
 #include "source/surfaces_among.h"
 
 enum { RGBA = 1u << CONIC_PLANE_RGBA, Z = 1u << CONIC_PLANE_Z, NORMAL = 1u << CONIC_PLANE_NORMAL };
+enum { MOTION = 1u << CONIC_PLANE_MOTION };
 
 int conic_shot_is_lit(const conic_shot *shot) {
   return shot->light.n_directions > 0 || shot->light.has_shadows || shot->light.n_lamps > 0;
@@ -17,6 +18,8 @@ unsigned conic_shot_needs(const conic_shot *shot, unsigned planes) {
   if (planes & 1u << CONIC_PLANE_POSITION || (planes & RGBA && shot->light.dome_stops > 0.0) ||
       (shot->n_samples > 0 && conic_focus_is_seen(shot)))
     planes |= Z;
+  if (planes & MOTION)
+    planes |= Z | (shot->motion ? 1u << CONIC_PLANE_ID : 0);
   if (planes & 1u << CONIC_PLANE_CLUSTER || shot->catchers | shot->holdouts)
     planes |= 1u << CONIC_PLANE_ID;
   return planes;

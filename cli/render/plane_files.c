@@ -56,15 +56,18 @@ static int is_single(unsigned planes) {
 
 int cli_planes_check(const cli_session *session, const cli_render_job *job) {
   const file_holds best = best_of(job);
-  unsigned lost = best >= HOLDS_ONE ? 0 : job->asked_planes & ~(unsigned)(best == HOLDS_LOOKS ? LOOKED_AT : RGBA);
+  unsigned lost = best == HOLDS_ALL   ? 0
+                  : best == HOLDS_ONE ? job->asked_planes & 1u << CONIC_PLANE_MOTION
+                                      : job->asked_planes & ~(unsigned)(best == HOLDS_LOOKS ? LOOKED_AT : RGBA);
   for (int i = 0; i < job->n_outputs; i++)
     if (strcmp(job->outputs[i], "-") == 0 && !is_single(set_of(job, "-")))
       return cli_usage("render: standard output takes one file, and %s has one a plane; an EXR holds all",
                        job->writing.format);
   for (int i = 0; i < CONIC_N_PLANES && job->n_outputs > 0 && !session->json_path; i++)
     if (lost >> i & 1)
-      return cli_usage("render: no output holds the plane %s; give an .exr, or .pfm for a file a plane",
-                       conic_plane_describe((conic_plane)i)->name);
+      return cli_usage("render: no output holds the plane %s; give an .exr%s",
+                       conic_plane_describe((conic_plane)i)->name,
+                       i == CONIC_PLANE_MOTION ? "" : ", or .pfm for a file a plane");
   return CLI_DONE;
 }
 

@@ -20,6 +20,14 @@ typedef struct conic_camera_rays {
 
 void conic_camera_rays_init(const conic_camera *camera, conic_camera_rays *rays);
 
+/* The world's point that is seen at a place of the picture, in pixels, at a depth. */
+void conic_camera_unproject(const conic_camera_rays *rays, double x_px, double y_px, double z, double place[3]);
+
+/* From a pixel's centre to the sample whose depth is in the plane Z, along both axes. */
+static inline double conic_depth_offset(int samples) {
+  return samples % 2 ? 0.0 : -0.5 / samples;
+}
+
 /* conic_camera_ray of a camera of any kind. */
 int conic_camera_ray_bent(const conic_camera_rays *rays, double x_px, double y_px, double origin[3],
                           double direction[3]);

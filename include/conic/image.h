@@ -43,7 +43,10 @@ typedef enum conic_plane {
       19, /* 1 uint32: how many samples were accumulated; conic/accumulate.h fills this and the next */
   CONIC_PLANE_VARIANCE = 20, /* 1 float: variance of the luminance's mean, from the difference of two halves of the
                                 samples */
-  CONIC_N_PLANES = 21
+  CONIC_PLANE_MOTION = 21,   /* 4 floats, in pixels, x to the right and y down: from the pixel's sample to where what it
+                                shows is a frame later, and to where it was a frame before; 0 where nothing is, or it is
+                                behind the camera then. conic_shot_draw fills it */
+  CONIC_N_PLANES = 22
 } conic_plane;
 
 /* The planes that drawing fills, which are the first ones: their number, and their bits. */

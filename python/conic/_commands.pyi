@@ -110,7 +110,7 @@ def render(
     points, or a list of these.
     `camera`: a :class:`Camera`, or a file of cameras, of which `view` names one; without, all of the scene is framed.
     `planes`: of "rgba", "Z", "N", "albedo", "weight", "count", "id", "P", of Gaussian scenes "T", "medianZ",
-    "inverseZ", "last", "doubt"; "ao", "shadow" (rgba and Z). `profile`: how a Gaussian scene is composited. `output`:
+    "inverseZ", "last", "doubt"; "ao", "shadow"; "motion" (rgba and Z). `profile`: how a Gaussian scene is composited. `output`:
     files to write, besides. `progress`: True, a function of a task's name and the share of it that is done, or a tqdm
     bar. All other options of `conic help render` are taken by their names.
 
@@ -272,8 +272,9 @@ def render(
         white [0]
     planes: planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place
         in the world); cluster of hybrids; T, medianZ, inverseZ, last, doubt of Gaussian scenes; ao and shadow,
-        what light arrives; cryptomatte, into .exr: mattes by which each input, or each patch of a hybrid, is
-        picked by its name in Nuke or Blender [rgba,Z]
+        what light arrives; motion, into .exr: pixels to the next frame, and to the one before; cryptomatte,
+        into .exr: mattes by which each input, or each patch of a hybrid, is picked by its name in Nuke or
+        Blender [rgba,Z]
     k: how many neighbours a raw point's size and normal are estimated from, 6 to 64 [20]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
     colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
@@ -475,8 +476,9 @@ def verify(
         white [0]
     planes: planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place
         in the world); cluster of hybrids; T, medianZ, inverseZ, last, doubt of Gaussian scenes; ao and shadow,
-        what light arrives; cryptomatte, into .exr: mattes by which each input, or each patch of a hybrid, is
-        picked by its name in Nuke or Blender [rgba,Z]
+        what light arrives; motion, into .exr: pixels to the next frame, and to the one before; cryptomatte,
+        into .exr: mattes by which each input, or each patch of a hybrid, is picked by its name in Nuke or
+        Blender [rgba,Z]
     k: how many neighbours a raw point's size and normal are estimated from, 6 to 64 [20]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
     colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
@@ -687,8 +689,9 @@ def judge(
         white [0]
     planes: planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place
         in the world); cluster of hybrids; T, medianZ, inverseZ, last, doubt of Gaussian scenes; ao and shadow,
-        what light arrives; cryptomatte, into .exr: mattes by which each input, or each patch of a hybrid, is
-        picked by its name in Nuke or Blender [rgba,Z]
+        what light arrives; motion, into .exr: pixels to the next frame, and to the one before; cryptomatte,
+        into .exr: mattes by which each input, or each patch of a hybrid, is picked by its name in Nuke or
+        Blender [rgba,Z]
     k: how many neighbours a raw point's size and normal are estimated from, 6 to 64 [20]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
     colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
@@ -855,8 +858,9 @@ def project(
         white [0]
     planes: planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place
         in the world); cluster of hybrids; T, medianZ, inverseZ, last, doubt of Gaussian scenes; ao and shadow,
-        what light arrives; cryptomatte, into .exr: mattes by which each input, or each patch of a hybrid, is
-        picked by its name in Nuke or Blender [rgba,Z]
+        what light arrives; motion, into .exr: pixels to the next frame, and to the one before; cryptomatte,
+        into .exr: mattes by which each input, or each patch of a hybrid, is picked by its name in Nuke or
+        Blender [rgba,Z]
     k: how many neighbours a raw point's size and normal are estimated from, 6 to 64 [20]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
     colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
@@ -1066,8 +1070,9 @@ def judge_intermediates(
         white [0]
     planes: planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place
         in the world); cluster of hybrids; T, medianZ, inverseZ, last, doubt of Gaussian scenes; ao and shadow,
-        what light arrives; cryptomatte, into .exr: mattes by which each input, or each patch of a hybrid, is
-        picked by its name in Nuke or Blender [rgba,Z]
+        what light arrives; motion, into .exr: pixels to the next frame, and to the one before; cryptomatte,
+        into .exr: mattes by which each input, or each patch of a hybrid, is picked by its name in Nuke or
+        Blender [rgba,Z]
     k: how many neighbours a raw point's size and normal are estimated from, 6 to 64 [20]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
     colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
@@ -1253,8 +1258,9 @@ def explain(
         white [0]
     planes: planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place
         in the world); cluster of hybrids; T, medianZ, inverseZ, last, doubt of Gaussian scenes; ao and shadow,
-        what light arrives; cryptomatte, into .exr: mattes by which each input, or each patch of a hybrid, is
-        picked by its name in Nuke or Blender [rgba,Z]
+        what light arrives; motion, into .exr: pixels to the next frame, and to the one before; cryptomatte,
+        into .exr: mattes by which each input, or each patch of a hybrid, is picked by its name in Nuke or
+        Blender [rgba,Z]
     k: how many neighbours a raw point's size and normal are estimated from, 6 to 64 [20]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
     colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
@@ -1909,8 +1915,9 @@ def gradient(
         white [0]
     planes: planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place
         in the world); cluster of hybrids; T, medianZ, inverseZ, last, doubt of Gaussian scenes; ao and shadow,
-        what light arrives; cryptomatte, into .exr: mattes by which each input, or each patch of a hybrid, is
-        picked by its name in Nuke or Blender [rgba,Z]
+        what light arrives; motion, into .exr: pixels to the next frame, and to the one before; cryptomatte,
+        into .exr: mattes by which each input, or each patch of a hybrid, is picked by its name in Nuke or
+        Blender [rgba,Z]
     k: how many neighbours a raw point's size and normal are estimated from, 6 to 64 [20]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
     colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear

@@ -15,7 +15,7 @@ WORK = ["--memory 20", "--tolerate", "--progressive levels", "--occlusion on", "
         "--where x>-1e9"]
 BASES = ["", "--exposure auto", "--color-by height"]
 PLANES = ("rgba Z N albedo weight count id P cluster T medianZ inverseZ last doubt ao shadow samples variance "
-          "cryptomatte").split()
+          "motion cryptomatte").split()
 GAUSSIAN = {"T", "medianZ", "inverseZ", "last", "doubt"}
 SURFACE = {"albedo", "weight", "ao", "shadow", "cryptomatte"}
 FILES = {"--show overdraw:f.pfm": "--show", "--show legend:f.pfm": "legend", "--show boxes:f.pfm": "--show boxes",
@@ -102,7 +102,7 @@ def planes(kind, words):
     for plane in PLANES:
         has = (plane in GAUSSIAN if plane in GAUSSIAN | SURFACE - {"cryptomatte"} and is_composited else
                plane not in GAUSSIAN | {"samples", "variance"} | (set() if "hybrid" in kind or kind == ".chy" else {"cluster"}))
-        out = "p.exr" if plane in ("id", "cryptomatte") else "p.pfm"
+        out = "p.exr" if plane in ("id", "motion", "cryptomatte") else "p.pfm"
         if plane == "cryptomatte" and (kind in (".lpc", "EPT", "Potree", "COPC")):
             has = False
         code, said = run("render", *words, "--size", "40x40", "--zoom", "0.7", "--aov", plane, "-o", out)
