@@ -88,6 +88,24 @@ static void add_repairs(conic_repairs *to, const conic_repairs *more) {
   to->clip += more->clip;
 }
 
+/* Takes every second point, third …, so that there are no more than `most`. */
+static conic_status thin_points(conic_context *context, uint64_t most, conic_splats *points) {
+  size_t stride = (size_t)((points->count + most - 1) / most), n = (points->count + stride - 1) / stride;
+  uint32_t *kept = conic_memory_allocate(context, n, sizeof *kept);
+  conic_splats some;
+  if (!kept)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < n; i++)
+    kept[i] = (uint32_t)(i * stride);
+  conic_status status = conic_splats_gather(context, points, kept, n, &some);
+  conic_memory_release(context, kept);
+  if (status != CONIC_OK)
+    return status;
+  conic_splats_release(context, points);
+  *points = some;
+  return CONIC_OK;
+}
+
 /* Gives the points axes where they have none. */
 static conic_status take_points(drawing_source *d, const char *path, const conic_source_options *options,
                                 conic_model *model) {
@@ -106,7 +124,12 @@ static conic_status take_points(drawing_source *d, const char *path, const conic
   estimate.stays_at_mesh = 1;
   if (model->n_triangles && !model->points.tangent_u[0])
     d->base.tolerance = conic_mesh_tolerance(d->base.context, &model->points);
-  conic_status status = conic_model_to_splats(context, &estimate, model, &repairs);
+  conic_status status = CONIC_OK;
+  if (options->most_raw && model->points.count > options->most_raw && !model->points.tangent_u[0] &&
+      !model->n_triangles)
+    status = thin_points(context, options->most_raw, &model->points);
+  if (status == CONIC_OK)
+    status = conic_model_to_splats(context, &estimate, model, &repairs);
   if (status != CONIC_OK)
     return status;
   conic_repairs_log(context, path, &repairs);

@@ -304,6 +304,7 @@ static void begin_reading(const cli_shot_again *again, cli_render_job *job) {
   job->opening.colors_are = reading->colors_are;
   job->opening.where = reading->where;
   job->opening.place = reading->place;
+  job->opening.most_raw = reading->most_raw;
   job->opening.texture_path = again->texture;
   if (!reading->coloring)
     return;

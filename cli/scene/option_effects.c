@@ -210,7 +210,7 @@ static cli_facts ask_of_drawing(const cli_render_job *job, const cli_scene_words
                 (job->abilities & (CONIC_SOURCE_COMPOSITES | CONIC_SOURCE_MIXES)) == CONIC_SOURCE_COMPOSITES;
   const unsigned planes = job->is_aov_given ? job->shot.planes : 0;
   int is_lit = render->shading != CONIC_SHADE_NONE && !is_composited;
-  int is_rough = words->quality == CLI_QUALITY_DRAFT && !words->is_method_given && !is_composited;
+  int is_rough = words->quality % CLI_QUALITY_SKETCH == CLI_QUALITY_DRAFT && !words->is_method_given && !is_composited;
   int is_masked = job->n_directions || job->has_shadows || job->lamps.n_lamps ||
                   planes & (1u << CONIC_PLANE_AO | 1u << CONIC_PLANE_SHADOW);
   return when(job->shot.view.error_px > 0.0, F(ERROR)) | when(job->budget > 0, F(BUDGET)) |
@@ -270,7 +270,7 @@ static void note_parts(cli_render_job *job, const cli_scene_words *words) {
       {HAS(WEIGHT) && planes != CONIC_DRAWN_PLANES, "aov weight", {.on = CLI_SURFACES}},
       {HAS(SAMPLES), "aov samples", {.needs = F(ACCUMULATED)}},
       {HAS(VARIANCE), "aov variance", {.needs = F(ACCUMULATED)}},
-      {words->is_quality_given && words->quality == CLI_QUALITY_DRAFT,
+      {words->is_quality_given && words->quality % CLI_QUALITY_SKETCH == CLI_QUALITY_DRAFT,
        "quality draft",
        {.apart = F(MAP), .why = "a map has one sample a pixel as it is"}},
       {job->is_plain && job->top.is_wanted, "plain", {.on = F(FACES) | F(RAW) | F(LIT)}},

@@ -8,7 +8,7 @@
 static const char *const cull_words[] = {"none", "back", NULL};
 static const char *const as_words[] = {"auto", "points", "mesh", "hybrid", NULL};
 static const conic_representation as_values[] = {CONIC_AS_AUTO, CONIC_AS_POINTS, CONIC_AS_MESH, CONIC_AS_HYBRID};
-static const char *const quality_words[] = {"draft", "good", "final", NULL};
+static const char *const quality_words[] = {"draft", "good", "final", "sketch", NULL};
 static const char *const only_words[] = {"triangles", "surfels", NULL};
 
 /* The words of choices that the library names, in the order of its numbers. */
@@ -183,10 +183,12 @@ static int is_picture(const cli_scene_words *raw, const cli_render_job *job) {
 
 /* What the quality stands for, where it is not said otherwise. */
 static void choose_quality(cli_scene_words *raw, cli_render_job *job) {
-  static const int samples[] = {1, 2, 4};
+  static const int samples[] = {1, 2, 4, 1};
   int is_wanted = raw->is_quality_given || !job->is_plain;
+  if (raw->quality == CLI_QUALITY_SKETCH)
+    job->opening.most_raw = 30000;
   if (is_wanted && !raw->is_method_given)
-    raw->method = raw->quality == CLI_QUALITY_DRAFT ? CONIC_METHOD_CONIC : CONIC_METHOD_AUTO;
+    raw->method = samples[raw->quality] == 1 ? CONIC_METHOD_CONIC : CONIC_METHOD_AUTO;
   if (is_wanted && !raw->is_samples_given && !job->accumulating.n_samples && !job->accumulating.is_sample_given &&
       (raw->is_quality_given || is_picture(raw, job)))
     job->shot.view.samples = samples[raw->quality];
@@ -299,8 +301,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .is_given = &raw.is_profile_given, .is_usual = 1, .parse_tail = parse_ignore_center, .tail = &raw.ignores_center,
        .acts = {.on = CLI_FACT(GAUSSIANS)}},
       {"quality", CLI_CHOICE, &raw.quality, "HOW",
-       "draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and --samples go "
-       "first [good]",
+       "draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); sketch: draft, of at most "
+       "30,000 of the raw points, and of levels with --error 2; --method and --samples go first [good]",
        .choices = quality_words, .is_given = &raw.is_quality_given, .is_usual = 1,
        .acts = {.needs = CLI_FACT(UNSETTLED), .is_warned = 1}},
       {"kernel", CLI_PARSED, &o->kernel, "NAME",

@@ -162,6 +162,8 @@ int cli_scene_check(const cli_session *session, cli_scene_words *words, cli_rend
   job->opening.as = job->is_patch ? CONIC_AS_PATCHES : (conic_representation)words->as;
   job->opening.is_whole = words->is_colored_whole;
   job->abilities = cli_kept_abilities(session, job->inputs, (size_t)job->n_inputs, &job->opening);
+  if (job->opening.most_raw && job->abilities & CONIC_SOURCE_STREAMS && !job->budget && job->shot.view.error_px == 0.0)
+    job->shot.view.error_px = 2.0; /* --quality sketch */
   if (job->abilities & CONIC_SOURCE_COMPOSITES)
     cli_backdrop_settle(job);
   if (job->abilities & CONIC_SOURCE_CLUSTERS) /* of which any part may be drawn, unless --memory says less */

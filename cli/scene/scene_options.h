@@ -4,7 +4,7 @@
 #include "cli/command.h"
 #include "cli/scene/render_job.h"
 
-enum cli_quality { CLI_QUALITY_DRAFT = 0, CLI_QUALITY_GOOD = 1, CLI_QUALITY_FINAL = 2 };
+enum cli_quality { CLI_QUALITY_DRAFT, CLI_QUALITY_GOOD, CLI_QUALITY_FINAL, CLI_QUALITY_SKETCH };
 
 /* Options that mean something only when all have been read. */
 typedef struct cli_scene_words {

@@ -66,6 +66,8 @@ typedef struct conic_source_options {
                         shift, twelve are the rows of a matrix of 3 x 4, sixteen of 4 x 4, which turns, scales evenly
                         and shifts what the file has. Of Gaussian scenes, and of what is read whole. Null: all as their
                         files have it */
+  uint64_t most_raw; /* of a file's raw points, whose sizes are estimated, every second, third … is taken, so that they
+                        are at most so many; 0: all */
 } conic_source_options;
 
 /* Splats, cutoff 1.5, 20 neighbours, no dots, flat faces. */

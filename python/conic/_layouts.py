@@ -503,6 +503,7 @@ class Reading(ctypes.Structure):
         ("cache", c_char_p),
         ("colors_are", c_int),
         ("place", c_char_p),
+        ("most_raw", c_uint64),
     ]
 
 

@@ -362,6 +362,7 @@ class Reading(_Struct):
     cache: Optional[str] = None
     colors_are: str = "file"
     place: Optional[str] = None
+    most_raw: int = 0
 
     def _put(self, struct: Any, alive: List[Any]) -> None:
         super()._put(struct, alive)

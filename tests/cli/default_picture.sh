@@ -102,11 +102,18 @@ sample_of() { # the picture's method, and whether it has soft pixels
 }
 for pair in ':auto 1' '--quality draft:conic 0' '--quality good:auto 1' '--quality final:auto 1' \
   '--quality draft --samples 2:conic 1' '--quality final --samples 1:auto 0' '--quality final --method disc:disc 1' \
-  '--repeat 2:auto 0' '--plain:auto 0' '--plain --quality draft:conic 0'; do
+  '--repeat 2:auto 0' '--plain:auto 0' '--plain --quality draft:conic 0' '--quality sketch:conic 0'; do
   # shellcheck disable=SC2086
   got=$(sample_of ${pair%:*})
   [[ $got == "${pair#*:}" ]] || fail "${pair%:*}: $got"
 done
+
+# A sketch leaves raw points out, and says so in its shot
+awk 'BEGIN { for (i = 0; i < 50000; i++) print i % 250, int(i / 250), 0.1 * (i % 7) }' > many.xyz
+run_as_typed 0 render many.xyz -o sketch.png --size 100x100 --quality sketch --json sketch.json
+grep -q '"splats_in": 25000,' sketch.json || fail "a sketch of 50000 points has $(grep splats_in sketch.json)"
+run_as_typed 0 render sketch.png -o again.png
+"$conic" diff sketch.png again.png > out || fail "a sketch is another again: $(cat out)"
 
 # Longitude and latitude become metres
 awk '{ printf "%.7f %.7f %.2f\n", -123.07 + $1 * 1e-5, 44.05 + $2 * 1e-5, 100 + 10 * $3 }' flat.xyz > degrees.xyz
