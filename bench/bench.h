@@ -180,6 +180,7 @@ typedef struct cli_bench_line {
   conic_render_statistics statistics; /* ms are medians over the warm frames; of a turntable means */
   int n_frames;                       /* warm ones */
   double first_ms, quartile_ms[2];    /* of the first frame; of the warm ones */
+  double interval;                    /* the part of the median by which it may be off, with 95 %; 1: nobody knows */
   double cpu_ms;                      /* of the processor, a frame, over all threads */
   double cycles, instructions;        /* likewise; NaN where nobody counts */
   cli_bench_work work[CLI_BENCH_N_STAGES];
@@ -209,11 +210,14 @@ conic_status cli_bench_refer(cli_session *session, cli_bench_scene *scene, const
                              conic_image *reference);
 
 /* Measures the line with the worker's threads: one first frame, then warm ones until there are `most`, or at least
- * `least` and the seconds are over. Null `counters`: nobody counts. */
+ * `least` and the seconds are over; and on to so many times both, until the median is known to CLI_BENCH_SURE. Null
+ * `counters`: nobody counts. */
 typedef struct cli_bench_patience {
   int least, most;
   double seconds;
+  int times;
 } cli_bench_patience;
+#define CLI_BENCH_SURE 0.02
 
 conic_status cli_bench_measure(cli_session *worker, cli_bench_scene *scene, const cli_bench_patience *patience,
                                const cli_bench_counters *counters, cli_bench_pictures *pictures, cli_bench_line *line);

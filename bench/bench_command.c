@@ -83,19 +83,19 @@ static const cli_bench_machine *machine_of(const cli_bench_job *job, const cli_b
   return NULL;
 }
 
-/* Lines whose middle half is over a tenth of the frame wide, or whose frame takes half as long again as its threads'
- * share of the processor's time. */
+/* Lines whose frames are so far apart that the median is not sure, or take half as long again as their threads' share
+ * of the processor's time. */
 static void warn_of_noise(const cli_session *session, const cli_bench_job *job) {
   int n_wide = 0, n_waiting = 0;
   for (int i = 0; i < job->n_lines; i++) {
     const cli_bench_line *line = &job->lines[i];
     const double frame = line->statistics.ms.frame;
-    n_wide += !line->n_turns && line->quartile_ms[1] - line->quartile_ms[0] > 0.1 * frame;
+    n_wide += !line->n_turns && line->interval > CLI_BENCH_SURE;
     n_waiting += !line->device && frame > 1.5 * line->cpu_ms / (double)line->threads + 1.0;
   }
   if (n_wide || n_waiting)
     cli_warn(session,
-             "bench: noise: of %d lines, %d have frames over 10 %% apart, and %d wait for the processor: leave "
+             "bench: noise: of %d lines, %d have medians not known to 2 %%, and %d wait for the processor: leave "
              "the machine alone, or --repeat more",
              job->n_lines, n_wide, n_waiting);
 }

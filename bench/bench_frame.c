@@ -81,7 +81,7 @@ typedef struct bench {
   conic_image timed; /* the planes that are drawn while the clock runs */
   cli_bench_counters counters;
   size_t n;
-  double *ms[CLI_BENCH_N_STAGES + 1], *lod, *cpu, *cycles, *instructions; /* of each warm frame */
+  double *ms[CLI_BENCH_N_STAGES + 1], *lod, *cpu, *cycles, *instructions, *sorted; /* of each warm frame */
 } bench;
 
 static conic_status draw_chosen(cli_bench_scene *scene, const cli_bench_line *line, conic_renderer *renderer,
@@ -118,10 +118,27 @@ static conic_status draw_timed(bench *b, const conic_camera *camera, conic_rende
   return status;
 }
 
+/* By ranks, which holds whatever the times are like: the median of n is within √n of the middle with 95 %. */
+static double interval_of(const bench *b) {
+  size_t n = b->n, reach = (size_t)ceil(0.98 * sqrt((double)n));
+  if (n < 2 * reach + 1)
+    return 1.0;
+  memcpy(b->sorted, b->ms[CLI_BENCH_N_STAGES], n * sizeof *b->sorted);
+  double median = cli_bench_median(b->sorted, n, NULL);
+  return 0.5 * (b->sorted[n / 2 + reach] - b->sorted[(n - 1) / 2 - reach]) / median;
+}
+
+static int is_enough(const bench *b, const cli_bench_patience *patience, double seconds) {
+  const size_t most = (size_t)patience->most, times = (size_t)patience->times;
+  if (b->n < most && (b->n < (size_t)patience->least || seconds < patience->seconds))
+    return 0;
+  return b->n >= times * most || seconds >= (double)times * patience->seconds ||
+         (b->n % 4 == 0 && interval_of(b) <= CLI_BENCH_SURE);
+}
+
 static conic_status draw_warm(bench *b, const cli_bench_patience *patience, conic_render_statistics *statistics) {
   double start = cli_seconds();
-  while (b->n < (size_t)patience->most &&
-         (b->n < (size_t)patience->least || cli_seconds() - start < patience->seconds)) {
+  while (!is_enough(b, patience, cli_seconds() - start)) {
     conic_camera camera = b->camera;
     if (b->line->n_turns)
       cli_bench_scene_turn(b->scene, (double)b->n / (double)b->line->n_turns, &camera);
@@ -160,6 +177,7 @@ static void take_middles(bench *b, cli_bench_line *line) {
   line->cycles = middle_of(b, b->cycles, NULL);
   line->instructions = middle_of(b, b->instructions, NULL);
   line->n_frames = (int)b->n;
+  line->interval = b->line->n_turns ? 1.0 : interval_of(b);
 }
 
 /* The pictures of the first and of the last timed frame, where that is of the same view, are compared, and one with all
@@ -222,7 +240,7 @@ conic_status cli_bench_refer(cli_session *session, cli_bench_scene *scene, const
 
 conic_status cli_bench_measure(cli_session *worker, cli_bench_scene *scene, const cli_bench_patience *patience,
                                const cli_bench_counters *counters, cli_bench_pictures *pictures, cli_bench_line *line) {
-  size_t most = (size_t)patience->most + 1;
+  size_t most = (size_t)patience->most * (size_t)patience->times + 1;
   bench b = {.context = worker->context,
              .scene = scene,
              .line = line,
@@ -230,10 +248,10 @@ conic_status cli_bench_measure(cli_session *worker, cli_bench_scene *scene, cons
              .options = options_of_frame(scene, line)};
   line->i_wrong_plane = -1;
   b.timed = with_planes(&pictures->drawn, pictures->timed_planes);
-  double *all = calloc(most * (CLI_BENCH_N_STAGES + 5), sizeof *all), *next = all;
+  double *all = calloc(most * (CLI_BENCH_N_STAGES + 6), sizeof *all), *next = all;
   if (!all)
     return CONIC_ERROR_MEMORY;
-  double **const series[] = {&b.lod, &b.cpu, &b.cycles, &b.instructions};
+  double **const series[] = {&b.lod, &b.cpu, &b.cycles, &b.instructions, &b.sorted};
   for (size_t i = 0; i < sizeof series / sizeof *series; i++, next += most)
     *series[i] = next;
   for (size_t i = 0; i <= CLI_BENCH_N_STAGES; i++, next += most)

@@ -89,6 +89,7 @@ static void report_times(cli_json *json, const cli_bench_line *line) {
   report_stages(json, "ms", &s->ms, 1.0);
   cli_json_figures(json, NULL, {"ms_first", line->first_ms}, {"ms_choice", s->ms.lod}, {"cpu_ms", line->cpu_ms});
   cli_json_numbers(json, "ms_quartiles", line->quartile_ms, 2);
+  cli_json_number(json, "interval", line->interval);
   report_stages(json, "ns_per_splat", &s->ms, 1e6 / (double)s->splats_in);
   cli_json_figures(json, NULL, {"cycles", line->cycles}, {"instructions", line->instructions},
                    {"cycles_per_splat", line->cycles / (double)s->splats_in},

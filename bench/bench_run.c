@@ -103,10 +103,10 @@ static void name_line(const bench_run *r, cli_bench_line *line) {
 
 static cli_bench_patience patience_of(const cli_bench_job *job) {
   if (job->n_turns)
-    return (cli_bench_patience){job->n_turns, job->n_turns, 0.0};
+    return (cli_bench_patience){job->n_turns, job->n_turns, 0.0, 1};
   if (job->repeat)
-    return (cli_bench_patience){job->repeat, job->repeat, 0.0};
-  return job->is_quick ? (cli_bench_patience){3, 5, 0.2} : (cli_bench_patience){3, 21, 1.0};
+    return (cli_bench_patience){job->repeat, job->repeat, 0.0, 1};
+  return job->is_quick ? (cli_bench_patience){3, 5, 0.2, 1} : (cli_bench_patience){3, 21, 1.0, 5};
 }
 
 static conic_status measure_by(bench_run *r, cli_session *worker, const cli_bench_counters *counters,

@@ -10,7 +10,7 @@ enum { N_MOMENTS = 2 }; /* a frame later, and a frame before */
 
 typedef double affine[3][4];
 
-typedef struct finding {
+typedef struct following {
   const conic_shot_work *work;
   conic_camera_rays rays;
   conic_camera cameras[N_MOMENTS];
@@ -18,7 +18,7 @@ typedef struct finding {
   size_t n_inputs;
   double offset;
   const conic_image *image;
-} finding;
+} following;
 
 /* The camera so many frames from the shot's own. */
 static conic_status camera_then(const conic_shot_work *work, double frames, conic_camera *camera) {
@@ -34,7 +34,7 @@ static double moment_of(const conic_shot *shot) {
 }
 
 /* A window's camera has another middle than those of the way. */
-static conic_status find_cameras(finding *f, const conic_camera *camera) {
+static conic_status find_cameras(following *f, const conic_camera *camera) {
   double now = moment_of(f->work->shot);
   conic_camera own;
   conic_status status = camera_then(f->work, now, &own);
@@ -62,7 +62,7 @@ static void invert(const affine m, affine inverse) {
 }
 
 /* The ways back to rest, and on from there to the other moments. */
-static conic_status find_moves(finding *f) {
+static conic_status find_moves(following *f) {
   static const double frames[] = {0.0, 1.0, -1.0};
   const conic_shot *shot = f->work->shot;
   const conic_source_pose *poses;
@@ -101,7 +101,7 @@ static int project(const conic_camera *camera, const double place[3], double at[
 }
 
 static void follow_row(void *data, size_t y) {
-  const finding *f = data;
+  const following *f = data;
   const conic_image *image = f->image;
   const float *z = image->planes[CONIC_PLANE_Z];
   const uint32_t *id = image->planes[CONIC_PLANE_ID];
@@ -128,7 +128,7 @@ static void follow_row(void *data, size_t y) {
 
 conic_status conic_motion_plane_find(const conic_shot_work *work, const conic_camera *camera, int samples,
                                      const conic_image *image) {
-  finding f = {.work = work, .offset = conic_depth_offset(samples), .image = image};
+  following f = {.work = work, .offset = conic_depth_offset(samples), .image = image};
   if (!image->planes[CONIC_PLANE_MOTION])
     return CONIC_OK;
   conic_camera_rays_init(camera, &f.rays);
