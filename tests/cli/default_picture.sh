@@ -112,7 +112,7 @@ done
 awk 'BEGIN { for (i = 0; i < 50000; i++) print i % 250, int(i / 250), 0.1 * (i % 7) }' > many.xyz
 run_as_typed 0 render many.xyz -o sketch.png --size 100x100 --quality sketch --json sketch.json
 grep -q '"splats_in": 25000,' sketch.json || fail "a sketch of 50000 points has $(grep splats_in sketch.json)"
-run_as_typed 0 render sketch.png -o again.png
+run_as_typed 0 render --again sketch.png -o again.png
 "$conic" diff sketch.png again.png > out || fail "a sketch is another again: $(cat out)"
 
 # Longitude and latitude become metres
