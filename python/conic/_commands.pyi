@@ -24,7 +24,7 @@ def render(
         "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
         "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
-    quality: Optional[Literal["draft", "good", "final"]] = None,
+    quality: Optional[Literal["draft", "good", "final", "sketch"]] = None,
     samples: Optional[int] = None,
     as_: Optional[Literal["auto", "points", "mesh", "hybrid"]] = None,
     shade: Optional[Literal["none", "lambert", "phong", "edl", "lambert+edl", "phong+edl"]] = None,
@@ -239,8 +239,9 @@ def render(
         brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
         others that take the picture's middle for the camera's principal point do so with any camera where
         :ignore-center stands behind them [exact]
-    quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
-        --samples go first [good]
+    quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); sketch: draft,
+        of at most 30,000 of the raw points, and of levels with --error 2; --method and --samples go first
+        [good]
     kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N
         [gauss]
     cutoff: at how many standard deviations from its centre a splat ends [1.5]
@@ -346,7 +347,7 @@ def verify(
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
         "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
         "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
-    quality: Optional[Literal["draft", "good", "final"]] = None,
+    quality: Optional[Literal["draft", "good", "final", "sketch"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
     prefilter: Optional[float] = None,
@@ -443,8 +444,9 @@ def verify(
         brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
         others that take the picture's middle for the camera's principal point do so with any camera where
         :ignore-center stands behind them [exact]
-    quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
-        --samples go first [good]
+    quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); sketch: draft,
+        of at most 30,000 of the raw points, and of levels with --error 2; --method and --samples go first
+        [good]
     kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N
         [gauss]
     cutoff: at how many standard deviations from its centre a splat ends [1.5]
@@ -549,7 +551,7 @@ def judge(
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
         "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
         "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
-    quality: Optional[Literal["draft", "good", "final"]] = None,
+    quality: Optional[Literal["draft", "good", "final", "sketch"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
     prefilter: Optional[float] = None,
@@ -656,8 +658,9 @@ def judge(
         brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
         others that take the picture's middle for the camera's principal point do so with any camera where
         :ignore-center stands behind them [exact]
-    quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
-        --samples go first [good]
+    quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); sketch: draft,
+        of at most 30,000 of the raw points, and of levels with --error 2; --method and --samples go first
+        [good]
     kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N
         [gauss]
     cutoff: at how many standard deviations from its centre a splat ends [1.5]
@@ -742,7 +745,7 @@ def project(
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
         "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
         "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
-    quality: Optional[Literal["draft", "good", "final"]] = None,
+    quality: Optional[Literal["draft", "good", "final", "sketch"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
     prefilter: Optional[float] = None,
@@ -825,8 +828,9 @@ def project(
         brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
         others that take the picture's middle for the camera's principal point do so with any camera where
         :ignore-center stands behind them [exact]
-    quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
-        --samples go first [good]
+    quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); sketch: draft,
+        of at most 30,000 of the raw points, and of levels with --error 2; --method and --samples go first
+        [good]
     kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N
         [gauss]
     cutoff: at how many standard deviations from its centre a splat ends [1.5]
@@ -932,7 +936,7 @@ def judge_intermediates(
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
         "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
         "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
-    quality: Optional[Literal["draft", "good", "final"]] = None,
+    quality: Optional[Literal["draft", "good", "final", "sketch"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
     prefilter: Optional[float] = None,
@@ -1037,8 +1041,9 @@ def judge_intermediates(
         brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
         others that take the picture's middle for the camera's principal point do so with any camera where
         :ignore-center stands behind them [exact]
-    quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
-        --samples go first [good]
+    quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); sketch: draft,
+        of at most 30,000 of the raw points, and of levels with --error 2; --method and --samples go first
+        [good]
     kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N
         [gauss]
     cutoff: at how many standard deviations from its centre a splat ends [1.5]
@@ -1132,7 +1137,7 @@ def explain(
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
         "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
         "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
-    quality: Optional[Literal["draft", "good", "final"]] = None,
+    quality: Optional[Literal["draft", "good", "final", "sketch"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
     prefilter: Optional[float] = None,
@@ -1225,8 +1230,9 @@ def explain(
         brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
         others that take the picture's middle for the camera's principal point do so with any camera where
         :ignore-center stands behind them [exact]
-    quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
-        --samples go first [good]
+    quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); sketch: draft,
+        of at most 30,000 of the raw points, and of levels with --error 2; --method and --samples go first
+        [good]
     kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N
         [gauss]
     cutoff: at how many standard deviations from its centre a splat ends [1.5]
@@ -1796,7 +1802,7 @@ def gradient(
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
         "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
         "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
-    quality: Optional[Literal["draft", "good", "final"]] = None,
+    quality: Optional[Literal["draft", "good", "final", "sketch"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
     prefilter: Optional[float] = None,
@@ -1882,8 +1888,9 @@ def gradient(
         brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
         others that take the picture's middle for the camera's principal point do so with any camera where
         :ignore-center stands behind them [exact]
-    quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and
-        --samples go first [good]
+    quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); sketch: draft,
+        of at most 30,000 of the raw points, and of levels with --error 2; --method and --samples go first
+        [good]
     kernel: how a splat fades from its centre to its edge: gauss, hat, box (not at all) or confetti:A,B,N
         [gauss]
     cutoff: at how many standard deviations from its centre a splat ends [1.5]
