@@ -6,11 +6,13 @@
 #include "cli/render/mattes.h"
 #include "cli/scene/background_options.h"
 #include "cli/scene/surfaces_drawn.h"
+#include "cli/sheet/sheet.h"
 #include "core/coloring/color_ramp.h"
 #include "core/coloring/legend.h"
 #include "core/files/disk.h"
 #include "core/files/file.h"
 #include "raster/frame/samples.h"
+#include "source/top/top_view.h"
 
 /* --- the picture --- */
 
@@ -89,9 +91,10 @@ void cli_sums_forget(const cli_render_job *job, int i_frame) {
 
 /* --- the legend --- */
 
-static conic_status write_legend(cli_session *session, const cli_render_job *job, const conic_coloring *coloring) {
+static conic_status write_legend(cli_session *session, const cli_render_job *job, const conic_coloring *coloring,
+                                 const char *length) {
   conic_image legend;
-  conic_status status = conic_legend_make(session->context, coloring, &legend);
+  conic_status status = conic_legend_make(session->context, coloring, length, &legend);
   if (status != CONIC_OK)
     return status;
   const conic_image_options writing = cli_picture_writing(job);
@@ -102,7 +105,7 @@ static conic_status write_legend(cli_session *session, const cli_render_job *job
 
 static conic_status show_legend(cli_session *session, cli_render_job *job, conic_image *image) {
   const conic_coloring *coloring = conic_source_coloring(job->source);
-  conic_status status = CONIC_OK;
+  conic_georeference reference = {0};
   if (!job->has_legend && !job->legend_path)
     return CONIC_OK;
   if (!coloring) {
@@ -111,10 +114,13 @@ static conic_status show_legend(cli_session *session, cli_render_job *job, conic
     job->legend_path = NULL;
     return CONIC_OK;
   }
-  if (job->has_legend)
-    conic_legend_draw(coloring, image);
-  if (job->legend_path)
-    status = write_legend(session, job, coloring);
+  conic_status status = conic_source_georeference(job->source, &reference);
+  const char *length = reference.unit_m > 0.0 ? cli_unit_name(reference.unit_m) : "";
+  if (status == CONIC_OK && job->has_legend)
+    conic_legend_draw(coloring, length, image);
+  if (status == CONIC_OK && job->legend_path)
+    status = write_legend(session, job, coloring, length);
+  conic_georeference_release(session->context, &reference);
   job->legend_path = NULL; /* once, however many frames */
   return status;
 }

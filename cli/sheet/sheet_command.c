@@ -80,7 +80,7 @@ static const double unit_metres[] = {1.0, 1e-3, 1e-2, 1e3, 0.3048, 1200.0 / 3937
 
 /* --- the work --- */
 
-static const char *name_unit(double unit_m) {
+const char *cli_unit_name(double unit_m) {
   for (int i = 0; units[i]; i++)
     if (fabs(unit_m / unit_metres[i] - 1.0) < 1e-9)
       return units[i];
@@ -92,7 +92,7 @@ static conic_status know_world(cli_sheet_job *job) {
   conic_status status = conic_source_georeference(job->scene.source, &job->reference);
   if (!job->is_unit_given)
     job->unit_m = job->reference.unit_m > 0.0 ? job->reference.unit_m : 1.0;
-  job->unit = name_unit(job->unit_m);
+  job->unit = cli_unit_name(job->unit_m);
   return status;
 }
 

@@ -115,15 +115,20 @@ static void size_legend(legend *l) {
   l->height = 2 * MARGIN + TITLE + (l->has_bar ? BAR_HEIGHT : l->n_rows * ROW - (ROW - SWATCH));
 }
 
-/* Of the values whose unit is known. */
-static const char *unit_of(const char *field) {
-  return strcmp(field, "gps_time") == 0 ? " (s)" : strcmp(field, "scan_angle") == 0 ? " (deg)" : "";
+/* Of the values whose unit is known; "": none. */
+static const char *unit_of(const char *field, const char *length) {
+  static const char *const lengths[] = {"height", "x", "y", "z"};
+  for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++)
+    if (strcmp(field, lengths[i]) == 0)
+      return length;
+  return strcmp(field, "gps_time") == 0 ? "s" : strcmp(field, "scan_angle") == 0 ? "deg" : "";
 }
 
-static void lay_out_legend(const conic_coloring *coloring, legend *l) {
+static void lay_out_legend(const conic_coloring *coloring, const char *length, legend *l) {
+  const char *unit = unit_of(coloring->field, length);
   memset(l, 0, sizeof *l);
   l->coloring = coloring;
-  snprintf(l->title, sizeof l->title, "%s%s", coloring->field, unit_of(coloring->field));
+  snprintf(l->title, sizeof l->title, *unit ? "%s (%s)" : "%s", coloring->field, unit);
   if (!coloring->ramp)
     list_axes(l);
   else if (strcmp(coloring->ramp, conic_ramp_name(CONIC_RAMP_CLASSES)) == 0)
@@ -198,13 +203,13 @@ static void draw_legend_into(const legend *l, const canvas *to, float alpha) {
   }
 }
 
-void conic_legend_draw(const conic_coloring *coloring, conic_image *image) {
+void conic_legend_draw(const conic_coloring *coloring, const char *length, conic_image *image) {
   legend l;
   int shorter = image->width < image->height ? image->width : image->height;
   canvas to = {.image = image, .unit = shorter > 800 ? shorter / 400 : 1};
   if (!image->planes[CONIC_PLANE_RGBA])
     return;
-  lay_out_legend(coloring, &l);
+  lay_out_legend(coloring, length, &l);
   to.x = image->width - (l.width + MARGIN) * to.unit;
   to.y = image->height - (l.height + MARGIN) * to.unit;
   draw_legend_into(&l, &to, 0.8f);
@@ -218,9 +223,10 @@ static conic_status draw_legend_alone(conic_context *context, const legend *l, c
   return status;
 }
 
-conic_status conic_legend_make(conic_context *context, const conic_coloring *coloring, conic_image *image) {
+conic_status conic_legend_make(conic_context *context, const conic_coloring *coloring, const char *length,
+                               conic_image *image) {
   legend l;
-  lay_out_legend(coloring, &l);
+  lay_out_legend(coloring, length, &l);
   return draw_legend_alone(context, &l, image);
 }
 

@@ -28,7 +28,7 @@ static void test_bar(int is_root) {
   conic_coloring coloring = bar(10.0, 30.0);
   float lightest[3], darkest[3];
   coloring.is_root = is_root;
-  CHECK_OK(conic_legend_make(context, &coloring, &image));
+  CHECK_OK(conic_legend_make(context, &coloring, "", &image));
   int left = 2 * 5 + 1, top = 2 * (5 + 12), bottom = image.height - 2 * 5 - 1;
   double n = (double)(bottom - top + 1), t = 0.5 / n;
   conic_coloring_color(&coloring, 10.0 + 20.0 * (is_root ? t * t : t), darkest);
@@ -49,12 +49,29 @@ static void test_classes_and_axes(void) {
   conic_coloring_color(&coloring, 2.0, ground);
   conic_coloring_color(&coloring, 9.0, water);
   conic_coloring_color(&coloring, 6.0, building);
-  CHECK_OK(conic_legend_make(context, &coloring, &image));
+  CHECK_OK(conic_legend_make(context, &coloring, "", &image));
   CHECK(count(&image, ground) == 256 && count(&image, water) == 256 && count(&image, building) == 0);
   conic_image_release(context, &image);
   coloring = (conic_coloring){.field = "normal"};
-  CHECK_OK(conic_legend_make(context, &coloring, &image));
+  CHECK_OK(conic_legend_make(context, &coloring, "", &image));
   conic_image_release(context, &image);
+}
+
+/* The unit of lengths stands in the title of heights alone. */
+static void test_units(void) {
+  conic_image images[3];
+  conic_coloring coloring = bar(10.0, 30.0);
+  CHECK_OK(conic_legend_make(context, &coloring, "", &images[0]));
+  CHECK_OK(conic_legend_make(context, &coloring, "us-ft", &images[1]));
+  CHECK(images[1].width > images[0].width);
+  coloring = (conic_coloring){.field = "intensity", .ramp = "sequential", .maximum = 30.0};
+  CHECK_OK(conic_legend_make(context, &coloring, "", &images[2]));
+  conic_image_release(context, &images[1]);
+  CHECK_OK(conic_legend_make(context, &coloring, "us-ft", &images[1]));
+  CHECK(images[1].width == images[2].width);
+  CHECK(conic_image_hash(&images[1], CONIC_PLANE_RGBA) == conic_image_hash(&images[2], CONIC_PLANE_RGBA));
+  for (int i = 0; i < 3; i++)
+    conic_image_release(context, &images[i]);
 }
 
 /* Every range has a few numbers and ends; a picture that is too small is no trouble. */
@@ -64,12 +81,12 @@ static void test_sizes(void) {
   conic_image image;
   for (size_t i = 0; i < sizeof ranges / sizeof *ranges; i++) {
     conic_coloring coloring = bar(ranges[i][0], ranges[i][1]);
-    CHECK_OK(conic_legend_make(context, &coloring, &image));
+    CHECK_OK(conic_legend_make(context, &coloring, "", &image));
     CHECK(image.width > 40 && image.width < 400);
     conic_image_release(context, &image);
     for (int size = 1; size < 2000; size = 5 * size + 3) {
       CHECK_OK(conic_image_allocate(context, size, size / 2 + 1, 1u << CONIC_PLANE_RGBA, &image));
-      conic_legend_draw(&coloring, &image);
+      conic_legend_draw(&coloring, "", &image);
       CHECK(pixel(&image, 0, 0)[3] == 0.0f || size < 300);
       conic_image_release(context, &image);
     }
@@ -87,6 +104,7 @@ int main(void) {
   test_bar(0);
   test_bar(1);
   test_classes_and_axes();
+  test_units();
   test_sizes();
   test_glyphs();
   conic_context_destroy(context);
