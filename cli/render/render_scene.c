@@ -92,6 +92,17 @@ static conic_status stand_upright(cli_session *session, cli_render_job *job) {
   return status;
 }
 
+/* Each direction draws the scene again. */
+static void tell_of_rereading(const cli_session *session, const cli_render_job *job) {
+  enum { LEAST_BYTES = 24 }; /* of a point in memory */
+  const uint64_t n_splats = conic_source_measure(job->source)->n_splats, room = job->access.memory_bytes;
+  if (job->n_directions && job->abilities & CONIC_SOURCE_STREAMS && job->shot.view.error_px == 0.0 && !job->budget &&
+      room && n_splats > room / LEAST_BYTES)
+    cli_note(session,
+             "all levels are read for each of %d directions, as --memory does not hold them: --error 1 is sooner done",
+             (int)job->n_directions);
+}
+
 conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
   char key[CONIC_SHA256_ROOM];
   cli_deadline_open(job);
@@ -120,6 +131,8 @@ conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
     conic_camera_path_stand(&job->path, job->is_up_given ? job->framing.up : conic_source_measure(job->source)->up);
     status = conic_camera_path_list(session->context, &job->path, job->fps, &job->cameras);
   }
+  if (status == CONIC_OK)
+    tell_of_rereading(session, job);
   if (status == CONIC_OK)
     cli_lights_settle(job);
   if (status == CONIC_OK && cli_effects_check_open(session, job) != CLI_DONE)
