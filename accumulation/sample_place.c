@@ -87,28 +87,6 @@ conic_status conic_sample_place(conic_context *context, const conic_camera *came
 
 /* --- on the way --- */
 
-/* The quaternion w, x, y, z of a rotation's rows, from the largest of the four, so that nothing is divided by a small
- * number (Shepperd 1978). */
-static void quaternion_of(const double m[3][4], double q[4]) {
-  double squares[4] = {m[0][0] + m[1][1] + m[2][2], m[0][0] - m[1][1] - m[2][2], m[1][1] - m[0][0] - m[2][2],
-                       m[2][2] - m[0][0] - m[1][1]};
-  int largest = 0;
-  for (int i = 1; i < 4; i++)
-    largest = squares[i] > squares[largest] ? i : largest;
-  double root = sqrt(1.0 + squares[largest]), scale = 0.5 / root;
-  const double sums[3] = {m[1][2] + m[2][1], m[2][0] + m[0][2], m[0][1] + m[1][0]};
-  const double differences[3] = {m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]};
-  q[largest] = 0.5 * root;
-  for (int i = 0; i < 3; i++) {
-    if (largest == 0)
-      q[1 + i] = scale * differences[i];
-    else if (1 + i != largest)
-      q[1 + i] = scale * sums[3 - i - (largest - 1)];
-  }
-  if (largest > 0)
-    q[0] = scale * differences[largest - 1];
-}
-
 static void eye_of_camera(const conic_camera *camera, double eye[3]) {
   for (int axis = 0; axis < 3; axis++) {
     eye[axis] = 0.0;
@@ -127,8 +105,8 @@ conic_status conic_camera_between(conic_context *context, const conic_camera *fr
   if (!from || !to || !camera || from->width != to->width || from->height != to->height || from->kind != to->kind ||
       from->lens != to->lens || !(fabs(part) < 1e6))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "camera: there is no way between cameras of different kinds");
-  quaternion_of(from->cam_from_world, first);
-  quaternion_of(to->cam_from_world, second);
+  conic_quaternion_of(from->cam_from_world, first);
+  conic_quaternion_of(to->cam_from_world, second);
   for (int i = 0; i < 4; i++)
     cosine += first[i] * second[i];
   for (int i = 0; i < 4; i++) {

@@ -2,10 +2,16 @@
 
 #include "cli/command.h"
 #include "cli/host_keeps.h"
+#include "cli/shell.h"
 #include "core/files/guard.h"
 #include "shots/shot_inputs.h"
 #include "shots/shot_key.h"
 #include "shots/way.h"
+
+int cli_host_program(int argc, char **argv) {
+  char **arguments = cli_shell_begin(&argc, argv);
+  return arguments ? cli_program(argc, arguments, NULL) : cli_error(CLI_RESOURCE, "out of memory");
+}
 
 int cli_host_run(cli_host *host, int argc, char **argv) {
   const cli_command *command = argc > 0 ? cli_find_command(argv[0]) : NULL;

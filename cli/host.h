@@ -84,6 +84,9 @@ typedef struct cli_host {
   int facts_are_lost; /* there was no memory for some */
 } cli_host;
 
+/* The whole program, as a shell starts it: it prints, handles signals, and returns its exit code. Once a process. */
+CONIC_API int cli_host_program(int argc, char **argv);
+
 /* Runs the command argv[0] and returns its exit code. Any number of threads may run commands at the same time. Nothing
  * is printed, and no signal is handled. */
 CONIC_API int cli_host_run(cli_host *host, int argc, char **argv);

@@ -151,6 +151,7 @@ static conic_planted right_gaussians(const conic_gaussians *gaussians, const con
                          .most_degree = gaussians->sh_degree,
                          .is_opaque = judging->is_opaque,
                          .surfaces = judging->surfaces,
+                         .size = 1.0f,
                          .axes = 1.0};
   right.camera = fine_camera_of(camera, judging->samples);
   if (right.rules.takes_middle) {

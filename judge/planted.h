@@ -44,9 +44,17 @@ typedef enum conic_planted_reading {
   CONIC_READING_RAW_LIMITED,   /* RAW, limited to 0 to 1 */
   CONIC_READING_TWICE,         /* undone twice, or undone where nothing was to undo */
   CONIC_READING_CONJUGATE,     /* conjugated quaternions */
-  CONIC_READING_WIDER,         /* scales are divided by √(ln 2) */
   CONIC_READING_LENGTH_SQUARED /* scales are multiplied by |q|² of the quaternion */
 } conic_planted_reading;
+
+/* How covariances are turned into the camera's axes, if not by the camera's rotation. */
+typedef enum conic_planted_turn {
+  CONIC_TURN_OWN = 0,
+  CONIC_TURN_HALF, /* and by half a turn about the camera's axis, as the other sign of the Jacobian's third column does
+                    */
+  CONIC_TURN_NONE,
+  CONIC_TURN_TRANSPOSED
+} conic_planted_turn;
 
 /* A wrong conversion of colours. */
 typedef enum conic_planted_transfer {
@@ -75,6 +83,7 @@ typedef struct conic_planted {
   double prefilter;
   conic_planted_order order;
   int is_reversed;
+  int key_bits; /* of the key's fraction that are kept; 0: all */
   conic_planted_extent extent;
   float falloff_end; /* half of the q at which the falloff is 0; 0: it has no such end */
   int has_unit_volume;
@@ -86,9 +95,14 @@ typedef struct conic_planted {
   int takes_any_color;     /* that has no limit at 0 … */
   int limits_color;        /* … or one at 1, too */
   int takes_translation;   /* the eye, for harmonics, is the camera's translation */
+  int turns_directions;    /* harmonics' directions are in the camera's axes */
   float shift_px[2];       /* between the places on the screen and those where the camera sees them */
   int most_degree;
   conic_planted_reading harmonics, rotation, scale, opacity;
+  int axes_order; /* 1 to 5: another order of the three scales */
+  float size;     /* multiplies scales */
+  conic_planted_turn turn;
+  int weighs_twice;                        /* colours are multiplied by α² T */
   conic_planted_transfer own_transfer;     /* of each Gaussian's own colour */
   const conic_gaussian_surfaces *surfaces; /* null: there are none */
   conic_planted_surfaces surfaces_are;
@@ -113,7 +127,7 @@ typedef struct conic_suspect {
   double value;
 } conic_suspect;
 
-enum { CONIC_MOST_SUSPECTS = 256 };
+enum { CONIC_MOST_SUSPECTS = 320 };
 
 /* Fills in the mistakes that pictures drawn so could have; returns how many. Profiles come last. */
 int conic_suspects_of_gaussians(const conic_planted *right, conic_suspect suspects[CONIC_MOST_SUSPECTS]);

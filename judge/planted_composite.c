@@ -114,19 +114,22 @@ static float planted_alpha(const conic_planted_frame *frame, const conic_ray_mee
 }
 
 /* Returns 0 where compositing has ended. */
-static int composite_kept(const conic_gaussian_rules *rules, const conic_kept_gaussian *k, float z, float alpha,
+static int composite_kept(const conic_planted_frame *frame, const conic_kept_gaussian *k, float z, float alpha,
                           composite_sums *s) {
+  const conic_gaussian_rules *rules = &frame->rules;
   const float before = s->T, after = before * (1.0f - alpha), w = alpha * before;
   if (after < rules->stop || (rules->is_beyond_stop && after == rules->stop))
     return 0;
+  const float of_color = frame->planted->weighs_twice > 0 ? alpha * w : w;
+  const float of_place = frame->planted->weighs_twice > 1 ? alpha * w : w;
   for (int c = 0; c < 3; c++) {
-    s->color[c] += w * k->footprint.color[c];
-    s->normal[c] += w * k->normal[c];
+    s->color[c] += of_color * k->footprint.color[c];
+    s->normal[c] += of_place * k->normal[c];
   }
   s->T = after;
   s->weight += w;
-  s->z += w * z;
-  s->inverse_z += w / z;
+  s->z += of_place * z;
+  s->inverse_z += of_place / z;
   s->count += 1.0f;
   if (before > 0.5f && (rules->has_late_median || !(after > 0.5f)))
     s->median_z = z;
@@ -206,12 +209,12 @@ static void composite_gaussians(const conic_planted_frame *frame, const conic_co
       continue;
     if (is_by_ray)
       scratch->hits[n_hits++] = (conic_planted_hit){frame->planted->is_reversed ? -z : z, alpha, at};
-    else if (!composite_kept(rules, k, z, alpha, s))
+    else if (!composite_kept(frame, k, z, alpha, s))
       return;
   }
   sort_planted_hits(scratch->hits, n_hits);
   for (size_t i = 0; i < n_hits; i++)
-    if (!composite_kept(rules, frame->kept[scratch->hits[i].kept], fabsf(scratch->hits[i].z), scratch->hits[i].alpha,
+    if (!composite_kept(frame, frame->kept[scratch->hits[i].kept], fabsf(scratch->hits[i].z), scratch->hits[i].alpha,
                         s))
       return;
 }

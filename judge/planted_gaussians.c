@@ -10,7 +10,7 @@
 enum { CONIC_PLANTED_RUN = 256 };
 
 typedef struct planted_run {
-  float scale[3][CONIC_PLANTED_RUN], w[CONIC_PLANTED_RUN], opacity[CONIC_PLANTED_RUN];
+  float scale[3][CONIC_PLANTED_RUN], rotation[4][CONIC_PLANTED_RUN], opacity[CONIC_PLANTED_RUN];
   float sh[CONIC_PLANTED_RUN * CONIC_MOST_HARMONICS];
 } planted_run;
 
@@ -26,14 +26,53 @@ static float planted_scale(conic_planted_reading reading, const conic_gaussians 
       scale =
           k == 0 ? from->rotation[0][i] * from->rotation[0][i] : scale + from->rotation[k][i] * from->rotation[k][i];
     return scale * from->scale[axis][i];
-  case CONIC_READING_WIDER:
-    return scale * 1.2011224f;
   case CONIC_READING_OWN:
   case CONIC_READING_RAW_LIMITED:
   case CONIC_READING_CONJUGATE:
     break;
   }
   return scale;
+}
+
+/* Which scale is read for an axis. Of two, there is one other order. */
+static int axis_of_scale(const conic_planted *p, const conic_gaussians *from, int axis) {
+  static const int orders[6][3] = {{0, 1, 2}, {1, 0, 2}, {0, 2, 1}, {2, 1, 0}, {1, 2, 0}, {2, 0, 1}};
+  return orders[p->axes_order > 1 && !from->scale[2] ? 0 : p->axes_order][axis];
+}
+
+/* What quaternions are multiplied by from the left, so that the camera's rotation then does the turn. */
+static void quaternion_of_turn(const conic_planted *p, double turn[4]) {
+  const double(*rows)[4] = p->camera.cam_from_world;
+  double q[4];
+  conic_quaternion_of(rows, q);
+  const double w = q[0], part = p->turn == CONIC_TURN_NONE ? 1.0 : 2.0 * w; /* q̄ q̄ = 2w² − 1, −2w v */
+  turn[0] = p->turn == CONIC_TURN_NONE ? w : 2.0 * w * w - 1.0;
+  for (int k = 0; k < 3; k++)
+    turn[k + 1] = -part * q[k + 1];
+  for (int k = 0; k < 4 && p->turn == CONIC_TURN_HALF; k++)
+    turn[k] = k > 0 ? rows[2][k - 1] : 0.0;
+}
+
+static void plant_rotations(const conic_planted *p, const conic_gaussians *from, size_t first, conic_gaussians *to,
+                            planted_run *room) {
+  static const int order[][4] = {[CONIC_READING_OWN] = {0, 1, 2, 3},
+                                 [CONIC_READING_RAW] = {3, 0, 1, 2},
+                                 [CONIC_READING_TWICE] = {1, 2, 3, 0},
+                                 [CONIC_READING_CONJUGATE] = {0, 1, 2, 3}};
+  const double conjugated = p->rotation == CONIC_READING_CONJUGATE ? -1.0 : 1.0;
+  double t[4] = {1.0, 0.0, 0.0, 0.0}, q[4];
+  if (p->turn)
+    quaternion_of_turn(p, t);
+  for (size_t i = 0; i < to->count; i++) {
+    for (int k = 0; k < 4; k++)
+      q[k] = (k == 0 ? conjugated : 1.0) * (double)from->rotation[order[p->rotation][k]][first + i];
+    room->rotation[0][i] = (float)(t[0] * q[0] - t[1] * q[1] - t[2] * q[2] - t[3] * q[3]);
+    room->rotation[1][i] = (float)(t[0] * q[1] + t[1] * q[0] + t[2] * q[3] - t[3] * q[2]);
+    room->rotation[2][i] = (float)(t[0] * q[2] - t[1] * q[3] + t[2] * q[0] + t[3] * q[1]);
+    room->rotation[3][i] = (float)(t[0] * q[3] + t[1] * q[2] - t[2] * q[1] + t[3] * q[0]);
+  }
+  for (int k = 0; k < 4; k++)
+    to->rotation[k] = room->rotation[k];
 }
 
 static float planted_opacity(conic_planted_reading reading, const conic_gaussians *from, size_t i) {
@@ -47,7 +86,6 @@ static float planted_opacity(conic_planted_reading reading, const conic_gaussian
   case CONIC_READING_TWICE:
     return conic_opacity_of_logit(from->opacity[i]);
   case CONIC_READING_OWN:
-  case CONIC_READING_WIDER:
   case CONIC_READING_LENGTH_SQUARED:
   case CONIC_READING_CONJUGATE:
     break;
@@ -88,27 +126,22 @@ static void plant_harmonics(const conic_planted *p, const conic_gaussians *from,
 /* Gaussians first … first + n - 1 as their own set, which refers to the scene and to `room`. */
 static conic_gaussians planted_read(const conic_planted *p, const conic_gaussians *from, size_t first, size_t n,
                                     planted_run *room) {
-  static const int order[][4] = {[CONIC_READING_OWN] = {0, 1, 2, 3},
-                                 [CONIC_READING_RAW] = {3, 0, 1, 2},
-                                 [CONIC_READING_TWICE] = {1, 2, 3, 0},
-                                 [CONIC_READING_CONJUGATE] = {0, 1, 2, 3}};
   const size_t n_harmonics = conic_harmonics_of_degree(from->sh_degree);
   conic_gaussians to = *from;
   to.count = n;
   for (int k = 0; k < 3; k++) {
     to.position[k] = from->position[k] + first;
     to.scale[k] = from->scale[k] ? from->scale[k] + first : NULL;
-    for (size_t i = 0; p->scale && to.scale[k] && i < n; i++)
-      room->scale[k][i] = planted_scale(p->scale, from, k, first + i);
-    if (p->scale && to.scale[k])
-      to.scale[k] = room->scale[k];
+    if (!to.scale[k] || !(p->scale || p->axes_order || p->size != 1.0f))
+      continue;
+    for (size_t i = 0; i < n; i++)
+      room->scale[k][i] = p->size * planted_scale(p->scale, from, axis_of_scale(p, from, k), first + i);
+    to.scale[k] = room->scale[k];
   }
   for (int k = 0; k < 4; k++)
-    to.rotation[k] = from->rotation[order[p->rotation][k]] + first;
-  for (size_t i = 0; p->rotation == CONIC_READING_CONJUGATE && i < n; i++)
-    room->w[i] = -from->rotation[0][first + i];
-  if (p->rotation == CONIC_READING_CONJUGATE)
-    to.rotation[0] = room->w;
+    to.rotation[k] = from->rotation[k] + first;
+  if (p->rotation || p->turn)
+    plant_rotations(p, from, first, &to, room);
   for (size_t i = 0; p->opacity && i < n; i++)
     room->opacity[i] = planted_opacity(p->opacity, from, first + i);
   to.opacity = p->opacity ? room->opacity : from->opacity + first;
@@ -211,6 +244,8 @@ static uint64_t planted_key(const planted_job *j, const conic_gaussians *set, si
               : p->order == CONIC_ORDER_FILE     ? 0.0f
                                                  : own;
   uint32_t bits = conic_bits_of_float(key);
+  const uint32_t dropped = p->key_bits ? 1u << (23 - p->key_bits) : 0; /* rounded to the nearest */
+  bits = dropped ? (bits + dropped / 2) & ~(dropped - 1) : bits;
   bits = bits & 0x80000000u ? ~bits : bits | 0x80000000u;
   return p->is_reversed ? (uint32_t)~bits : bits;
 }
@@ -219,6 +254,18 @@ static uint64_t planted_key(const planted_job *j, const conic_gaussians *set, si
 static void give_unit_volume(conic_gaussian_footprint *f) {
   float determinant = f->form[0] * f->form[2] - f->form[1] * f->form[1];
   f->opacity *= sqrtf(determinant) * 0.15915494f;
+}
+
+/* The colour along the direction in the camera's axes. */
+static void color_in_camera(const planted_job *j, const conic_gaussians *set, size_t i, float color[3]) {
+  double direction[3];
+  for (int row = 0; row < 3; row++) {
+    const double *turn = j->planted->camera.cam_from_world[row];
+    direction[row] = 0.0;
+    for (int axis = 0; axis < 3; axis++)
+      direction[row] += turn[axis] * (set->origin[axis] + (double)set->position[axis][i] - j->view.eye[axis]);
+  }
+  conic_harmonic_color(set, i, j->planted->rules.has_plain_color, direction, color);
 }
 
 static void keep_one(planted_job *j, const conic_gaussians *run, size_t i, size_t first, kept_room *room) {
@@ -242,6 +289,8 @@ static void keep_one(planted_job *j, const conic_gaussians *run, size_t i, size_
     return;
   if (p->has_unit_volume)
     give_unit_volume(&k->footprint);
+  if (p->turns_directions)
+    color_in_camera(j, run, i, k->footprint.color);
   for (int c = 0; c < 3; c++) {
     k->footprint.color[c] -= p->takes_any_color ? any_color : 0.0f;
     if (p->limits_color && k->footprint.color[c] > 1.0f)

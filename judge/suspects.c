@@ -28,6 +28,12 @@ enum {
   OF_EYE,
   OF_FORM,
   OF_CROSS,
+  OF_TURN,
+  OF_AXES_ORDER,
+  OF_SIZE,
+  OF_ZOOM,
+  OF_KEY_BITS,
+  OF_WEIGHT,
   OF_ALPHA_LEAST,
   OF_LIMIT,
   OF_SURFACES,
@@ -75,12 +81,14 @@ static const suspected of_gaussians[] = {
     {"alpha-max-1", OF_ALPHA_MOST, 1, {0}, {1.0}},
     {"alpha-min-0", OF_ALPHA_LEAST, 1, {0}, {1e-9}},
     {"exp2", OF_FORM, 1, {0}, {0.6931471805599453}},
+    {"falloff-not-halved", OF_FORM, 1, {0}, {2.0}},
     {"cross-term", OF_CROSS, 4, {0}, {0.5, 2.0, -1.0, 0.0}},
     {"falloff-renormalised", OF_FALLOFF, 5, {0, 0, 0, 0, 1}, {4.0, 4.5, 5.5412635, 2.0, 0.0}},
     {"order-distance", OF_ORDER, 2, {0, 1}, {CONIC_ORDER_DISTANCE, CONIC_ORDER_DISTANCE}},
     {"order-file", OF_ORDER, 2, {0, 1}, {CONIC_ORDER_FILE, CONIC_ORDER_FILE}},
     {"order-z", OF_ORDER, 1, {0}, {CONIC_ORDER_Z}},
     {"order-reversed", OF_ORDER, 1, {1}, {CONIC_ORDER_OWN}},
+    {"order-coarse", OF_KEY_BITS, 2, {10, 7}, {0.0}}, /* half floats, and the upper half of a float */
     {"near",
      OF_NEAR,
      19,
@@ -90,7 +98,7 @@ static const suspected of_gaussians[] = {
     {"sh-degree-1", OF_DEGREE, 1, {1}, {0.0}},
     {"sh-degree-2", OF_DEGREE, 1, {2}, {0.0}},
     {"sh-direction", OF_SIGNS, 1, {0xfe0e}, {0.0}}, /* odd degrees change their signs with the direction */
-    {"sh-direction", OF_EYE, 1, {1}, {0.0}},
+    {"sh-direction", OF_EYE, 2, {0, 1}, {0.0}},
     {"sh-sign",
      OF_SIGNS,
      18,
@@ -104,6 +112,11 @@ static const suspected of_gaussians[] = {
     {"quaternion-conjugate", OF_ROTATION, 1, {CONIC_READING_CONJUGATE}, {0.0}},
     {"quaternion-not-normalised", OF_RAW_ROTATION, 3, {0, 0, CONIC_READING_LENGTH_SQUARED}, {2.0, 3.0, 0.0}},
     {"scale-linear", OF_SCALE, 2, {CONIC_READING_RAW, CONIC_READING_TWICE}, {0.0}},
+    {"scale-order", OF_AXES_ORDER, 5, {1, 2, 3, 4, 5}, {0.0}},
+    {"scale-factor", OF_SIZE, 9, {0}, {0.25, 0.5, 0.7, 0.85, 0.95, 1.1, 1.4, 2.0, 3.0}},
+    {"jacobian-sign", OF_TURN, 1, {CONIC_TURN_HALF}, {0.0}},
+    {"view-rotation", OF_TURN, 2, {CONIC_TURN_NONE, CONIC_TURN_TRANSPOSED}, {0.0}},
+    {"alpha-twice", OF_WEIGHT, 2, {1, 2}, {0.0}},
     {"opacity-linear", OF_OPACITY, 3, {CONIC_READING_RAW, CONIC_READING_RAW_LIMITED, CONIC_READING_TWICE}, {0.0}},
     {"srgb-decoded", OF_OWN_TRANSFER, 1, {CONIC_TRANSFER_DECODED}, {0.0}},
     {"srgb-encoded", OF_OWN_TRANSFER, 1, {CONIC_TRANSFER_ENCODED}, {0.0}},
@@ -137,6 +150,11 @@ static const suspected of_all[] = {
     {"centre-ignored", OF_CENTER, 3, {3, 1, 2}, {0.0}},
     {"centre-flipped", OF_CENTER, 3, {4, 8, 12}, {0.0}},
     {"field-of-view", OF_FOCAL, 4, {0, 1, 2, 3}, {0.0}},
+    {"focal-length",
+     OF_ZOOM,
+     14,
+     {0},
+     {0.5, 0.65, 0.8, 0.9, 0.95, 0.98, 0.995, 1.005, 1.02, 1.05, 1.1, 1.25, 1.5, 2.0}},
     {"srgb-decoded",
      OF_TRANSFER,
      3,
@@ -218,6 +236,9 @@ static void plant_in_camera(conic_camera *camera, const conic_suspect *s) {
     camera->cy = s->how & 2 ? 0.5 * camera->height : camera->cy;
     camera->cx = s->how & 4 ? camera->width - camera->cx : camera->cx;
     camera->cy = s->how & 8 ? camera->height - camera->cy : camera->cy;
+  } else if (s->kind == OF_ZOOM) {
+    camera->fx *= s->value;
+    camera->fy *= s->value;
   } else
     change_focal(camera, s->how);
 }
@@ -250,11 +271,27 @@ static void plant_in_scene(const conic_suspect *s, conic_planted *p) {
     p->color_offset = (float)s->value;
     break;
   case OF_EYE:
-    p->takes_translation = 1;
+    p->takes_translation = s->how;
+    p->turns_directions = !s->how;
     break;
-  case OF_FORM:
-    p->scale = CONIC_READING_WIDER; /* of what is wider by √(1/ln 2), e^(-q/2) is 2^(-q/2) */
+  case OF_FORM: /* e^(-v q/2) of a Gaussian is e^(-q/2) of one that is narrower by √v */
+    p->size = (float)(1.0 / sqrt(s->value));
     p->rules.dilation /= s->value;
+    break;
+  case OF_TURN:
+    p->turn = (conic_planted_turn)s->how;
+    break;
+  case OF_AXES_ORDER:
+    p->axes_order = s->how;
+    break;
+  case OF_SIZE:
+    p->size = (float)s->value;
+    break;
+  case OF_KEY_BITS:
+    p->key_bits = s->how;
+    break;
+  case OF_WEIGHT:
+    p->weighs_twice = s->how;
     break;
   case OF_CROSS:
     p->changes_cross = 1;
@@ -344,6 +381,7 @@ void conic_suspect_plant(const conic_suspect *s, conic_planted *p) {
   case OF_CENTER_SHIFT:
   case OF_CENTER:
   case OF_FOCAL:
+  case OF_ZOOM:
     plant_in_camera(&p->camera, s);
     break;
   case OF_MIRROR:
@@ -379,7 +417,7 @@ int conic_suspect_is_rough(const conic_suspect *suspect) {
 }
 
 int conic_suspect_is_any(const conic_suspect *suspect) {
-  return suspect->kind == OF_NEAR;
+  return suspect->kind == OF_NEAR || suspect->kind == OF_SIZE || suspect->kind == OF_ZOOM;
 }
 
 int conic_suspect_is_profile(const conic_suspect *suspect) {
@@ -434,6 +472,8 @@ static int is_mistake(const conic_planted *right, const conic_suspect *s) {
   case OF_FORM:
   case OF_CROSS:
     return is_ellipse;
+  case OF_TURN:
+    return is_ellipse || s->how != CONIC_TURN_HALF;
   case OF_ALPHA_LEAST:
     return (float)rules->alpha_least > (float)s->value;
   case OF_EYE:

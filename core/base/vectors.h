@@ -87,3 +87,25 @@ static inline void conic_rotation_of(const double quaternion[4], double rows[3][
   rows[2][1] = 2.0 * (y * z + w * x);
   rows[2][2] = 1.0 - 2.0 * (x * x + y * y);
 }
+
+/* The quaternion w, x, y, z of a rotation's rows, from the largest of the four, so that nothing is divided by a small
+ * number (Shepperd 1978). */
+static inline void conic_quaternion_of(const double m[3][4], double q[4]) {
+  double squares[4] = {m[0][0] + m[1][1] + m[2][2], m[0][0] - m[1][1] - m[2][2], m[1][1] - m[0][0] - m[2][2],
+                       m[2][2] - m[0][0] - m[1][1]};
+  int largest = 0;
+  for (int i = 1; i < 4; i++)
+    largest = squares[i] > squares[largest] ? i : largest;
+  double root = sqrt(1.0 + squares[largest]), scale = 0.5 / root;
+  const double sums[3] = {m[1][2] + m[2][1], m[2][0] + m[0][2], m[0][1] + m[1][0]};
+  const double differences[3] = {m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]};
+  q[largest] = 0.5 * root;
+  for (int i = 0; i < 3; i++) {
+    if (largest == 0)
+      q[1 + i] = scale * differences[i];
+    else if (1 + i != largest)
+      q[1 + i] = scale * sums[3 - i - (largest - 1)];
+  }
+  if (largest > 0)
+    q[0] = scale * differences[largest - 1];
+}

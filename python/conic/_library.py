@@ -77,6 +77,7 @@ def _load() -> ctypes.CDLL:
         ("conic_shot_file_destroy", None, [pointer, pointer]),
         ("conic_shot_field_at", ctypes.c_int, [size, pointer]),
         ("cli_host_look", ctypes.c_int, [pointer, pointer]),
+        ("cli_host_program", ctypes.c_int, [ctypes.c_int, pointer]),
         ("cli_host_run", ctypes.c_int, [pointer, ctypes.c_int, pointer]),
         ("cli_host_draw", ctypes.c_int, [pointer, ctypes.c_int, pointer, pointer, pointer, ctypes.c_char_p,
                                          ctypes.c_char_p, ctypes.c_int, pointer, pointer]),
