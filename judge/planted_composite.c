@@ -70,6 +70,7 @@ static conic_ray_meeting meet_kept(const conic_planted_frame *frame, const conic
     m.half_q = 0.5f * (f->form[0] * dx * dx + f->form[2] * dy * dy) + f->form[1] * dx * dy;
     break;
   case CONIC_SHAPE_RAY:
+  case CONIC_SHAPE_SOLID:
     m = meet_plain_ray(k, across, down);
     break;
   case CONIC_SHAPE_DISC:
@@ -95,7 +96,7 @@ static conic_ray_meeting meet_kept(const conic_planted_frame *frame, const conic
 static float planted_alpha(const conic_planted_frame *frame, const conic_ray_meeting *m) {
   const conic_planted *p = frame->planted;
   const conic_gaussian_rules *rules = &frame->rules;
-  const int is_ray = rules->shape == CONIC_SHAPE_RAY;
+  const int is_ray = rules->shape == CONIC_SHAPE_RAY || rules->shape == CONIC_SHAPE_SOLID;
   const int is_tiny = !(m->half_q >= 0.0f && m->half_q < 80.0f); /* mistakes reach where exp_negative does not */
   float value = conic_exp_negative(is_tiny ? -80.0f : -m->half_q), most = rules->greatest_half_q;
   if (rules->fall_end > 0.0f)
@@ -204,7 +205,9 @@ static void composite_gaussians(const conic_planted_frame *frame, const conic_co
     const conic_kept_gaussian *k = frame->kept[at];
     const conic_ray_meeting m = meet_kept(frame, k, x, y);
     const float alpha = planted_alpha(frame, &m);
-    const float z = rules->shape == CONIC_SHAPE_DISC && !(rules->disc_near > 0.0f) ? k->footprint.z : m.z;
+    const int is_at_mean =
+        rules->shape == CONIC_SHAPE_SOLID || (rules->shape == CONIC_SHAPE_DISC && !(rules->disc_near > 0.0f));
+    const float z = is_at_mean ? k->footprint.z : m.z;
     if (alpha < 0.0f || z >= hiding_z)
       continue;
     if (is_by_ray)

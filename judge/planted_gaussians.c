@@ -212,7 +212,7 @@ static int meets_sample(const planted_job *j, const conic_gaussian_footprint *f)
 
 /* Grows the box by a pixel on each side, without crossing a border of the covered tiles. */
 static void grow_box(const conic_planted *p, conic_gaussian_footprint *f) {
-  const int size[2] = {p->camera.width, p->camera.height}, tile = CONIC_GAUSSIAN_TILE;
+  const int size[2] = {p->camera.width, p->camera.height}, tile = conic_profile_tile(&p->rules, &p->camera);
   const int is_tiled = p->rules.coverage != CONIC_COVERAGE_ALPHA;
   for (int axis = 0; axis < 2; axis++) {
     const int first = f->box[0][axis], last = f->box[1][axis];

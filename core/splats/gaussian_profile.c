@@ -44,6 +44,9 @@ static const conic_profile_row rows[CONIC_N_GAUSSIAN_PROFILES] = {
     [CONIC_PROFILE_GS3D_0_4] = {"gs3d-0.4", ON_THE_WEB, .near_z = 0.1, .dilation = 0.3, .compensation_least = -1.0,
                                 .clip = 1.2, .axis_most = 1024.0 / ROOT_OF_8, .spread_least = 0.31622776601683794,
                                 .color_most = 1.0},
+    [CONIC_PROFILE_3DGUT_2025] = {"3dgut-2025", LIKE_GSPLAT, .shape = CONIC_SHAPE_SOLID, .coverage = CONIC_COVERAGE_BOX,
+                                  .alpha_most = 0.99, .compensation_least = -1.0, .unscented = {0.1, 2.0, 0.0},
+                                  .unscented_share = 0.1},
 };
 
 const conic_profile_row *conic_profile_row_of(conic_gaussian_profile profile) {

@@ -9,6 +9,7 @@ typedef enum conic_gaussian_shape {
   CONIC_SHAPE_DISC = 2,     /* where the ray meets the plane of a 2D Gaussian, or a dot on the screen */
   CONIC_SHAPE_FILTERED = 3, /* along the ray under the pixel's filter: of profiles of CONIC_SHAPE_RAY, as is the next */
   CONIC_SHAPE_SIGHT = 4,    /* along the ray of a camera whose rays are not affine on the screen */
+  CONIC_SHAPE_SOLID = 5,    /* along the pixel's ray, in the order of the means and at their depths */
   CONIC_N_SHAPES
 } conic_gaussian_shape;
 
@@ -53,8 +54,18 @@ typedef struct conic_profile_row {
   int has_float_eye;
   int has_late_median; /* the median is the last with T > ½ before it */
   double disc_cutoff, disc_extent;
-  double disc_near; /* the least depth of a place on the disc; 0: no such border, and the mean's depth counts */
+  double disc_near;    /* the least depth of a place on the disc; 0: no such border, and the mean's depth counts */
+  double unscented[3]; /* α, β and κ of the unscented transform, whose ellipse has the box that is looked at; zeros:
+                          there is none */
+  double unscented_share; /* a Gaussian none of whose sigma points is so near to the picture, as a share of its sides,
+                             is left out */
 } conic_profile_row;
+
+/* The sides of a tile of coverage, in pixels. */
+static inline int conic_profile_tile(const conic_profile_row *row, const conic_camera *camera) {
+  const int least = camera->width < camera->height ? camera->width : camera->height;
+  return row->shape == CONIC_SHAPE_SOLID && least < 1080 ? 8 : 16;
+}
 
 /* Whether axes on the screen have limits. */
 static inline int conic_profile_limits_axes(const conic_profile_row *row) {

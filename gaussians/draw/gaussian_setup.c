@@ -91,18 +91,18 @@ static float half_reach_of(double reach) {
   return reach < 158.0 ? (float)(0.5 * reach) + 1e-4f : INFINITY;
 }
 
-/* Whole tiles of 16 pixels, as integers that are cut off towards 0. */
-static double tile_border(double place, double size) {
-  double n = place / 16.0, most = (double)(((int)size + 15) / 16);
-  return 16.0 * (double)(int)conic_limited(n, 0.0, most);
+/* Whole tiles, as integers that are cut off towards 0. */
+static double tile_border(double place, double size, double tile) {
+  double n = place / tile, most = (double)(((int)size + (int)tile - 1) / (int)tile);
+  return tile * (double)(int)conic_limited(n, 0.0, most);
 }
 
 static void cover_square(const conic_gaussian_view *view, const double place[2], double radius, double least[2],
                          double most[2]) {
   const double size[2] = {view->camera->width, view->camera->height};
   for (int axis = 0; axis < 2; axis++) {
-    double first = tile_border(place[axis] - 0.5 - radius, size[axis]);
-    double behind = tile_border(place[axis] - 0.5 + radius + 15.0, size[axis]);
+    double first = tile_border(place[axis] - 0.5 - radius, size[axis], 16.0);
+    double behind = tile_border(place[axis] - 0.5 + radius + 15.0, size[axis], 16.0);
     least[axis] = least[axis] > first ? least[axis] : first;
     most[axis] = most[axis] < behind ? most[axis] : behind;
   }
@@ -111,6 +111,23 @@ static void cover_square(const conic_gaussian_view *view, const double place[2],
 static double round_up(double value) {
   double whole = (double)(int64_t)conic_limited(value, -1e15, 1e15);
   return whole + (whole < value);
+}
+
+/* The tiles that a box of half that size meets. Returns 0 where that is none. */
+static int cover_box(const conic_gaussian_view *view, const double place[2], const double half[2], double least[2],
+                     double most[2]) {
+  const double size[2] = {view->camera->width, view->camera->height};
+  const double tile = conic_profile_tile(view->rules, view->camera);
+  for (int axis = 0; axis < 2; axis++) {
+    double radius = round_up(half[axis]);
+    if (place[axis] + radius <= 0.0 || place[axis] - radius >= size[axis])
+      return 0;
+    double first = tile_border(place[axis] - radius, size[axis], tile);
+    double behind = tile_border(place[axis] + radius + tile - 1e-9, size[axis], tile);
+    least[axis] = least[axis] > first ? least[axis] : first;
+    most[axis] = most[axis] < behind ? most[axis] : behind;
+  }
+  return 1;
 }
 
 /* Whether a Gaussian is so far beside the picture that its ellipse cannot come to it, nor its ellipsoid, which is
@@ -122,14 +139,14 @@ static int is_far_beside(const conic_gaussian_view *view, const conic_gaussian_p
   double scale = p->scale[0] > p->scale[1] ? p->scale[0] : p->scale[1];
   scale = 1.1 * (scale > p->scale[2] ? scale : p->scale[2]);
   if (view->rays || view->is_parallel || view->prefilter > 0.0 || rules->shape == CONIC_SHAPE_DISC ||
-      !(p->opacity <= 1.0) || !(z > 0.0) || (rules->shape == CONIC_SHAPE_RAY && !(z > 6.0 * scale)))
+      !(p->opacity <= 1.0) || !(z > 0.0) || (rules->shape != CONIC_SHAPE_ELLIPSE && !(z > 6.0 * scale)))
     return 0;
   for (int axis = 0; axis < 2; axis++) {
     const double slope = p->mean[axis] / z, place = focal[axis] * slope + view->center_px[axis];
     const double beside = (place < 0.0 ? -place : place - size[axis]) - 1.0, spread = focal[axis] * scale / z;
     /* of a ball before the eye the outline reaches farther outwards, at z = 4·scale and 3.35 scales by less than this
      */
-    const double farther = rules->shape == CONIC_SHAPE_RAY ? 8.0 : 1.0;
+    const double farther = rules->shape != CONIC_SHAPE_ELLIPSE ? 8.0 : 1.0;
     if (beside > 0.0 && beside * beside > farther * most_reach *
                                               (spread * spread * (1.0 + slope * slope) + rules->dilation +
                                                rules->spread_least + rules->axis_least))
@@ -329,6 +346,87 @@ static conic_gaussian_fate set_up_ray(const conic_gaussian_view *view, conic_gau
              : CONIC_GAUSSIAN_CULLED;
 }
 
+enum { SIGMA_POINTS = 7 }; /* the mean, and one on either side of it along each axis */
+
+/* Where they are on the screen, 0, 0 where behind the eye. Returns 0 where none is in the picture or near it. */
+static int find_sigma_points(const conic_gaussian_view *view, const conic_gaussian_placed *p, double step,
+                             double points[SIGMA_POINTS][2]) {
+  const double focal[2] = {view->camera->fx, view->camera->fy}, size[2] = {view->camera->width, view->camera->height};
+  int is_seen = 0;
+  for (int i = 0; i < SIGMA_POINTS; i++) {
+    const int axis_of = (i + 2) % 3;
+    const double along = (i == 0 ? 0.0 : i > 3 ? -step : step) * p->scale[axis_of];
+    double at[3];
+    for (int row = 0; row < 3; row++)
+      at[row] = p->mean[row] + along * p->unit[axis_of][row];
+    int is_in = at[2] > 0.0;
+    for (int axis = 0; axis < 2; axis++) {
+      const double margin = view->rules->unscented_share * size[axis];
+      points[i][axis] = at[2] > 0.0 ? focal[axis] * (at[axis] / at[2]) + view->center_px[axis] : 0.0;
+      is_in &= points[i][axis] >= -margin && points[i][axis] < size[axis] + margin;
+    }
+    is_seen |= is_in;
+  }
+  return is_seen;
+}
+
+/* The half size of the box that is looked at, from the dilated variances; 0 where it is left out. */
+static int find_unscented_size(const conic_profile_row *rules, const double v[3], double opacity, double half[2]) {
+  const double h = rules->dilation, wide = v[0] * v[2] - v[1] * v[1];
+  const double share = ((v[0] - h) * (v[2] - h) - v[1] * v[1]) / wide;
+  const double ratio = opacity * sqrt(share > 2.5e-5 ? share : 2.5e-5) / (double)(float)rules->alpha_least;
+  if (!(wide > 0.0) || !(v[0] >= 0.0) || !(v[2] >= 0.0) || !(ratio >= 1.0))
+    return 0;
+  const double mean = 0.5 * (v[0] + v[2]), apart = mean * mean - wide;
+  const double longest = mean + sqrt(apart > 0.01 ? apart : 0.01);
+  const double extent = conic_limited(sqrt(2.0 * conic_logarithm(ratio)), 0.0, 3.33);
+  for (int axis = 0; axis < 2; axis++)
+    half[axis] = extent * sqrt(v[2 * axis] < longest ? v[2 * axis] : longest);
+  return is_number(half[0]) && is_number(half[1]);
+}
+
+/* The mean of the sigma points, and half the size of the box about it. */
+static int find_unscented_box(const conic_gaussian_view *view, const conic_gaussian_placed *p, double place[2],
+                              double half[2]) {
+  const conic_profile_row *rules = view->rules;
+  const double square = rules->unscented[0] * rules->unscented[0], spread = square * (3.0 + rules->unscented[2]);
+  const double of_mean = (spread - 3.0) / spread, of_others = 0.5 / spread;
+  double points[SIGMA_POINTS][2], v[3] = {rules->dilation, 0.0, rules->dilation};
+  if (!find_sigma_points(view, p, sqrt(spread), points))
+    return 0;
+  for (int axis = 0; axis < 2; axis++) {
+    place[axis] = of_mean * points[0][axis];
+    for (int i = 1; i < SIGMA_POINTS; i++)
+      place[axis] += of_others * points[i][axis];
+  }
+  for (int i = 0; i < SIGMA_POINTS; i++) {
+    const double x = points[i][0] - place[0], y = points[i][1] - place[1];
+    const double weight = i ? of_others : of_mean + 1.0 - square + rules->unscented[1];
+    v[0] += weight * x * x;
+    v[1] += weight * x * y;
+    v[2] += weight * y * y;
+  }
+  return is_number(place[0]) && is_number(place[1]) && find_unscented_size(rules, v, p->opacity, half);
+}
+
+static conic_gaussian_fate set_up_solid(const conic_gaussian_view *view, conic_gaussian_placed *p,
+                                        conic_gaussian_footprint *f, conic_gaussian_ray *ray) {
+  double least[2], most[2], unit_of, place[2], half[2], reach = reach_of(view->rules, p->opacity);
+  for (int k = 0; k < 3; k++)
+    if (!(p->scale[k] > 0x1p-23))
+      return CONIC_GAUSSIAN_CULLED;
+  if (!(reach > 0.0) || !conic_gaussian_project(view, p, reach, least, most))
+    return CONIC_GAUSSIAN_CULLED;
+  if (!find_unscented_box(view, p, place, half) ||
+      (view->rules->coverage == CONIC_COVERAGE_BOX && !cover_box(view, place, half, least, most)) ||
+      !conic_gaussian_limit_box(view, least, most, f))
+    return CONIC_GAUSSIAN_CULLED;
+  take_mean(view, p, f);
+  return find_ray(view, p, f, ray, NULL, &unit_of) && find_ray_outline(view, p, reach, ray, unit_of, f)
+             ? CONIC_GAUSSIAN_DRAWN
+             : CONIC_GAUSSIAN_CULLED;
+}
+
 /* g and c about a direction, and their derivatives by directions; e of these. */
 static int find_sight(const conic_gaussian_view *view, const conic_gaussian_placed *p, conic_gaussian_sight *sight) {
   double directions[4][3] = {{0.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
@@ -402,7 +500,7 @@ static int find_disc_box(const conic_gaussian_view *view, const conic_gaussian_p
 static conic_gaussian_fate set_up_disc(const conic_gaussian_view *view, conic_gaussian_placed *p,
                                        conic_gaussian_footprint *f, conic_gaussian_ray *ray) {
   const conic_profile_row *rules = view->rules;
-  const double size[2] = {view->camera->width, view->camera->height}, reach = reach_of(rules, p->opacity);
+  const double reach = reach_of(rules, p->opacity);
   double place[2], extent[2], least[2], most[2], unit_of;
   if (!(reach > 0.0) || !find_disc_box(view, p, place, extent) || !conic_gaussian_project(view, p, reach, least, most))
     return CONIC_GAUSSIAN_CULLED;
@@ -415,15 +513,10 @@ static conic_gaussian_fate set_up_disc(const conic_gaussian_view *view, conic_ga
     cover_square(view, place,
                  round_up(conic_limited(extent[0] > extent[1] ? extent[0] : extent[1], 3.0 * 0.707106, 1e15)), least,
                  most);
-  for (int axis = 0; axis < 2 && rules->coverage == CONIC_COVERAGE_BOX; axis++) {
-    double radius = round_up(rules->disc_extent * extent[axis]);
-    if (place[axis] + radius <= 0.0 || place[axis] - radius >= size[axis])
-      return CONIC_GAUSSIAN_CULLED;
-    double first = tile_border(place[axis] - radius, size[axis]);
-    double behind = tile_border(place[axis] + radius + 16.0 - 1e-9, size[axis]);
-    least[axis] = least[axis] > first ? least[axis] : first;
-    most[axis] = most[axis] < behind ? most[axis] : behind;
-  }
+  for (int axis = 0; axis < 2; axis++)
+    extent[axis] *= rules->disc_extent;
+  if (rules->coverage == CONIC_COVERAGE_BOX && !cover_box(view, place, extent, least, most))
+    return CONIC_GAUSSIAN_CULLED;
   if (!conic_gaussian_limit_box(view, least, most, f))
     return CONIC_GAUSSIAN_CULLED;
   take_reference(view, place[0], place[1], f);
@@ -467,6 +560,7 @@ conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const
   conic_gaussian_fate fate = view->rays                            ? set_up_sight(view, &p, f, sight)
                              : rules->shape == CONIC_SHAPE_ELLIPSE ? set_up_ellipse(view, &p, f)
                              : rules->shape == CONIC_SHAPE_RAY     ? set_up_ray(view, &p, f, ray, filter)
+                             : rules->shape == CONIC_SHAPE_SOLID   ? set_up_solid(view, &p, f, ray)
                                                                    : set_up_disc(view, &p, f, ray);
   if (fate != CONIC_GAUSSIAN_DRAWN)
     return fate;

@@ -142,17 +142,19 @@ static void composite_rays(const conic_gaussian_list *list, conic_gaussian_tile 
   }
 }
 
+/* And solids, which have no dot. */
 static void composite_discs(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
   const conic_gaussian_rules *rules = list->rules;
+  const int is_solid = rules->shape == CONIC_SHAPE_SOLID;
   for (size_t at = 0; at < CONIC_GAUSSIAN_TILE_PIXELS; at++) {
     int x = tile->x + conic_gaussian_column(at), y = tile->y + conic_gaussian_row(at);
     for (size_t i = 0; i < list->n; i++) {
       const CONIC_STORED conic_gaussian_footprint *f = &list->footprints[list->entries[i]];
       meeting m = meet_ray(f, &list->rays[list->entries[i]], x, y);
       float dx = (float)(x - f->x) + f->dx, dy = (float)(y - f->y) + f->dy, dot = dx * dx + dy * dy;
-      float half_q = m.half_q < dot ? m.half_q : dot, alpha = alpha_of(rules, f, half_q);
+      float half_q = m.half_q < dot || is_solid ? m.half_q : dot, alpha = alpha_of(rules, f, half_q);
       if (covers_pixel(f, x, y) && half_q >= 0.0f && (!(rules->disc_near > 0.0f) || m.z >= rules->disc_near) &&
-          alpha >= rules->alpha_least &&
+          (!is_solid || m.z > 0.0f) && alpha >= rules->alpha_least &&
           !composite_one(list, list->entries[i], rules->disc_near > 0.0f ? m.z : f->z, alpha, tile, at))
         break;
     }
@@ -196,7 +198,7 @@ CONIC_DEFINE_LOOPS(conic_gaussian_loops)
 void conic_gaussian_loops_scalar(conic_gaussian_loops *loops) {
   loops->composite[CONIC_SHAPE_ELLIPSE] = composite_ellipses;
   loops->composite[CONIC_SHAPE_RAY] = composite_rays;
-  loops->composite[CONIC_SHAPE_DISC] = composite_discs;
+  loops->composite[CONIC_SHAPE_DISC] = loops->composite[CONIC_SHAPE_SOLID] = composite_discs;
   loops->composite[CONIC_SHAPE_FILTERED] = composite_filtered;
   loops->composite[CONIC_SHAPE_SIGHT] = composite_sights;
 }

@@ -30,11 +30,13 @@ CONIC_INLINE lanes half_q_of_ellipse(const gaussian_record *r, places at) {
   return 0.5f * (r->form[0] * dx * dx + r->form[2] * dy * dy) + r->form[1] * dx * dy;
 }
 
-/* The lesser of the plane's and the dot's. */
-CONIC_INLINE meeting_lanes meet_disc(const gaussian_record *r, const CONIC_STORED conic_gaussian_ray *ray, places at) {
+/* The lesser of the plane's and the dot's; a solid has none. */
+CONIC_INLINE meeting_lanes meet_disc(const gaussian_record *r, const CONIC_STORED conic_gaussian_ray *ray, places at,
+                                     int is_solid) {
   lanes x = at.column + r->x, y = at.row + r->y, dx = x + r->dx, dy = y + r->dy;
   meeting_lanes m = meet_lanes(ray, x, y);
-  m.half_q = lanes_min(m.half_q, dx * dx + dy * dy);
+  if (!is_solid)
+    m.half_q = lanes_min(m.half_q, dx * dx + dy * dy);
   return m;
 }
 
@@ -42,16 +44,19 @@ CONIC_INLINE response respond(const scene *s, const gaussian_record *r, uint32_t
                               conic_gaussian_shape shape) {
   const conic_gaussian_list *list = s->list;
   const float near_z = list->rules->disc_near;
+  const int is_solid = list->rules->shape == CONIC_SHAPE_SOLID;
   response to = {.z = lanes_of(r->z), .color = {lanes_of(r->color[0]), lanes_of(r->color[1]), lanes_of(r->color[2])}};
   meeting_lanes m;
   if (shape == CONIC_SHAPE_DISC)
-    m = meet_disc(r, &list->rays[footprint], at);
+    m = meet_disc(r, &list->rays[footprint], at, is_solid);
   else
     m.half_q = half_q_of_ellipse(r, at);
   to.alpha = lanes_alpha(s, r, m.half_q);
   to.covered = within_box(r, at) & lanes_at_least(m.half_q, lanes_of(0.0f)) & lanes_at_least(to.alpha, s->least);
   if (shape == CONIC_SHAPE_ELLIPSE && s->has_greatest)
     to.covered = to.covered & lanes_at_least(s->greatest, m.half_q);
+  if (shape == CONIC_SHAPE_DISC && is_solid)
+    to.covered = to.covered & lanes_less(lanes_of(0.0f), m.z);
   if (shape == CONIC_SHAPE_DISC && near_z > 0.0f) {
     to.covered = to.covered & lanes_at_least(m.z, lanes_of(near_z));
     to.z = m.z;
@@ -128,7 +133,7 @@ static void composite_discs_in_lanes(const conic_gaussian_list *list, conic_gaus
 CONIC_FILL_LOOPS(conic_gaussian_loops) {
   loops->composite[CONIC_SHAPE_ELLIPSE] = composite_ellipses_in_lanes;
   loops->composite[CONIC_SHAPE_RAY] = composite_rays_in_lanes;
-  loops->composite[CONIC_SHAPE_DISC] = composite_discs_in_lanes;
+  loops->composite[CONIC_SHAPE_DISC] = loops->composite[CONIC_SHAPE_SOLID] = composite_discs_in_lanes;
   loops->composite[CONIC_SHAPE_FILTERED] = composite_filtered_in_lanes;
   loops->composite[CONIC_SHAPE_SIGHT] = composite_sights_in_lanes;
 }

@@ -31,10 +31,11 @@ typedef enum conic_gaussian_profile {
   CONIC_PROFILE_SPLAT_2023 = 12,   /* antimatter15/splat */
   CONIC_PROFILE_PLAYCANVAS_2 = 13, /* PlayCanvas by WebGL */
   CONIC_PROFILE_SPARK_2 = 14,
-  CONIC_PROFILE_GS3D_0_4 = 15 /* GaussianSplats3D */
+  CONIC_PROFILE_GS3D_0_4 = 15,  /* GaussianSplats3D */
+  CONIC_PROFILE_3DGUT_2025 = 16 /* gsplat 1.6 with_ut and with_eval3d */
 } conic_gaussian_profile;
 
-#define CONIC_N_GAUSSIAN_PROFILES 16
+#define CONIC_N_GAUSSIAN_PROFILES 17
 
 /* "exact", "inria-2023" …; null for a number that is no profile. */
 CONIC_API const char *conic_gaussian_profile_name(conic_gaussian_profile profile);

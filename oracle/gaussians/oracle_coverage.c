@@ -1,12 +1,13 @@
 #include "oracle/gaussians/oracle_coverage.h"
 
-/* Pixels from tile `first` to before tile `behind`, of 16 pixels, with the least and greatest that each may be. */
+/* Pixels from tile `first` to before tile `behind`, with the least and greatest that each may be. */
 static void admit_tiles(const oracle_doubting *d, int axis, const double first[2], const double behind[2],
                         oracle_uncertain *g) {
-  const double size = axis ? d->view->camera->height : d->view->camera->width, most = ceil(size / 16.0);
+  const double tile = conic_profile_tile(d->view->rules, d->view->camera);
+  const double size = axis ? d->view->camera->height : d->view->camera->width, most = ceil(size / tile);
   double tiles[4] = {first[0], first[1], behind[0], behind[1]};
   for (int k = 0; k < 4; k++)
-    tiles[k] = 16.0 * oracle_min(oracle_max(floor(tiles[k] / 16.0), 0.0), most);
+    tiles[k] = tile * oracle_min(oracle_max(floor(tiles[k] / tile), 0.0), most);
   g->wide[0][axis] = tiles[0];
   g->sure[0][axis] = tiles[1];
   g->sure[1][axis] = tiles[2];
@@ -30,7 +31,8 @@ void conic_oracle_admit_box(const oracle_doubting *d, const bounded radius[2], o
     double low = bounded_low(g->place[axis]), high = bounded_high(g->place[axis]);
     double ulp = d->model->is_setup_in_float ? 2e-7 * (fabs(low) + most + 16.0) : 2e-9;
     const double first[2] = {low - most - ulp, high - least + ulp};
-    const double behind[2] = {low + least + 16.0 - ulp, high + most + 16.0 + ulp};
+    const double tile = conic_profile_tile(d->view->rules, d->view->camera);
+    const double behind[2] = {low + least + tile - ulp, high + most + tile + ulp};
     admit_tiles(d, axis, first, behind, g);
     double size = axis ? d->view->camera->height : d->view->camera->width; /* beside the picture, it is culled */
     if (high + most + ulp <= 0.0 || low - most - ulp >= size)

@@ -1,7 +1,7 @@
 /* Gaussians for the oracle: what each profile makes of one, and how much a place of the screen sees of it. */
 #include "oracle/gaussians/oracle_gaussian.h"
 
-#include "oracle/oracle_math.h"
+#include "oracle/gaussians/oracle_unscented.h"
 
 #define UNIT_SLACK (1.0 / 1048576.0)
 
@@ -156,6 +156,19 @@ static int place_ellipse(const oracle_gaussian_view *view, oracle_gaussian *g) {
   return 1;
 }
 
+/* The tiles that a box about the place meets; 0: none. */
+static int cover_box(const oracle_gaussian_view *view, const double half[2], oracle_gaussian *g) {
+  const double tile = conic_profile_tile(view->rules, view->camera);
+  for (int axis = 0; axis < 2; axis++) {
+    double radius = ceil(half[axis]), size = axis ? view->camera->height : view->camera->width;
+    if (g->place_px[axis] + radius <= 0.0 || g->place_px[axis] - radius >= size)
+      return 0;
+    g->box_px[0][axis] = floor((g->place_px[axis] - radius) / tile) * tile;
+    g->box_px[1][axis] = ceil((g->place_px[axis] + radius) / tile) * tile;
+  }
+  return 1;
+}
+
 /* The centre of the box of the disc's outline at the cutoff, and the pixels that the profile looks at. */
 static int place_disc(const oracle_gaussian_view *view, oracle_gaussian *g) {
   const conic_profile_row *rules = view->rules;
@@ -186,14 +199,30 @@ static int place_disc(const oracle_gaussian_view *view, oracle_gaussian *g) {
     cover_tiles(view, ceil(oracle_max(oracle_max(extent[0], extent[1]), 3.0 * 0.707106)), g);
     return 1;
   }
-  for (int axis = 0; axis < 2; axis++) {
-    double radius = ceil(rules->disc_extent * extent[axis]), size = axis ? camera->height : camera->width;
-    if (g->place_px[axis] + radius <= 0.0 || g->place_px[axis] - radius >= size)
+  const double half[2] = {rules->disc_extent * extent[0], rules->disc_extent * extent[1]};
+  return cover_box(view, half, g);
+}
+
+/* The box of the unscented transform. */
+static int place_solid(const oracle_gaussian_view *view, oracle_gaussian *g) {
+  bounded mean[3], axes[3][3];
+  oracle_unscented u;
+  for (int k = 0; k < 3; k++) {
+    mean[k] = bounded_of(g->mean[k]);
+    for (int row = 0; row < 3; row++)
+      axes[k][row] = bounded_of(g->axes[k][row]);
+    if (!(g->scale[k] > 0x1p-23))
       return 0;
-    g->box_px[0][axis] = floor((g->place_px[axis] - radius) / 16.0) * 16.0;
-    g->box_px[1][axis] = ceil((g->place_px[axis] + radius) / 16.0) * 16.0;
   }
-  return 1;
+  conic_oracle_unscent(view, mean, (const bounded(*)[3])axes, bounded_of(g->opacity), 0.0, &u);
+  if (!u.is_seen || !(u.conditions[0].v > 0.0))
+    return 0;
+  for (int k = 1; k < 4; k++)
+    if (!(u.conditions[k].v >= 0.0))
+      return 0;
+  g->place_px[0] = u.place[0].v;
+  g->place_px[1] = u.place[1].v;
+  return cover_box(view, (const double[2]){u.radius[0].v, u.radius[1].v}, g);
 }
 
 static double number_of_half(uint16_t half) {
@@ -264,6 +293,8 @@ void conic_oracle_gaussian_place(const oracle_gaussian_view *view, const conic_g
     g->is_drawn &= place_ellipse(view, g);
   if (rules->shape == CONIC_SHAPE_DISC)
     g->is_drawn &= place_disc(view, g);
+  if (rules->shape == CONIC_SHAPE_SOLID)
+    g->is_drawn &= place_solid(view, g);
   if (view->prefilter > 0.0)
     g->is_drawn &= conic_oracle_gaussian_box(view, g);
 }
@@ -337,6 +368,10 @@ double conic_oracle_gaussian_alpha(const oracle_gaussian_view *view, const oracl
       return 0.0;
   } else if (rules->shape == CONIC_SHAPE_RAY) {
     if (!conic_oracle_gaussian_along(view, g, x, y, &q, z, &width))
+      return 0.0;
+  } else if (rules->shape == CONIC_SHAPE_SOLID) {
+    double at;
+    if (!conic_oracle_gaussian_along(view, g, x, y, &q, &at, &width))
       return 0.0;
   } else if (rules->shape == CONIC_SHAPE_DISC) {
     q = disc_form(view, g, x, y, z);

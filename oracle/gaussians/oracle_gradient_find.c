@@ -18,8 +18,8 @@ CONIC_DEFINE_NAMES(conic_gradient_kind_name, conic_gradient_kind, CONIC_N_GRADIE
 
 int conic_gradient_has_profile(conic_gaussian_profile profile) {
   const conic_profile_row *rules = conic_profile_row_of(profile);
-  return rules && rules->shape != CONIC_SHAPE_DISC && !conic_profile_limits_axes(rules) &&
-         rules->compensation_slack == 0.0 && rules->fall_end == 0.0;
+  return rules && rules->shape != CONIC_SHAPE_DISC && rules->shape != CONIC_SHAPE_SOLID &&
+         !conic_profile_limits_axes(rules) && rules->compensation_slack == 0.0 && rules->fall_end == 0.0;
 }
 
 void conic_gaussian_gradient_release(conic_context *context, conic_gaussian_gradient *gradient) {

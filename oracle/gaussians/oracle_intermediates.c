@@ -186,8 +186,9 @@ static conic_status make_room(conic_context *context, const oracle_entry *e, siz
           conic_memory_allocate_these(context, CONIC_ROOM(a->value, n), CONIC_ROOM(a->low, n), CONIC_ROOM(a->high, n));
   }
   if (conic_oracle_has_radii(e->view.rules)) {
-    to->tile_width = (e->bounding.width + ORACLE_TILE - 1) / ORACLE_TILE;
-    to->tile_height = (e->bounding.height + ORACLE_TILE - 1) / ORACLE_TILE;
+    const int tile = conic_profile_tile(e->view.rules, e->view.camera);
+    to->tile_width = (e->bounding.width + tile - 1) / tile;
+    to->tile_height = (e->bounding.height + tile - 1) / tile;
   }
   return status;
 }

@@ -4,8 +4,6 @@
 #include "conic/gaussian_intermediates.h"
 #include "oracle/gaussians/oracle_cells.h"
 
-enum { ORACLE_TILE = 16 };
-
 /* A number in double, and the least and the greatest that floats may make of it. */
 typedef struct oracle_range {
   double v, low, high;

@@ -444,9 +444,10 @@ conic_status conic_gaussian_intermediates_judge(conic_context *context, const co
   j->context = context;
   j->path = path;
   if (status == CONIC_OK) {
+    const int tile = conic_profile_tile(j->e.view.rules, camera);
     j->count = gaussians->count;
-    j->tile_width = conic_oracle_has_radii(j->e.view.rules) ? (camera->width + ORACLE_TILE - 1) / ORACLE_TILE : 0;
-    j->tile_height = (camera->height + ORACLE_TILE - 1) / ORACLE_TILE;
+    j->tile_width = conic_oracle_has_radii(j->e.view.rules) ? (camera->width + tile - 1) / tile : 0;
+    j->tile_height = (camera->height + tile - 1) / tile;
     status = read_given(j);
   }
   if (status == CONIC_OK)

@@ -139,7 +139,7 @@ static void ask_all(const oracle_doubting *d, double x, double y, oracle_meeting
   if (limits->half_cutoff > 0.0)
     ask_whether(m, CONIC_DOUBT_EDGE, CONIC_PART_OUTSIDE, m->half_q_v <= limits->half_cutoff,
                 m->half_q[0] <= limits->half_cutoff, m->half_q[1] > limits->half_cutoff);
-  if (rules->shape == CONIC_SHAPE_RAY)
+  if (rules->shape == CONIC_SHAPE_RAY || rules->shape == CONIC_SHAPE_SOLID)
     ask_whether(m, CONIC_DOUBT_NEAR, CONIC_PART_NEAR, m->z_v > 0.0, m->z[1] > 0.0, !(m->z[0] > 0.0));
   if (limits->disc_near > 0.0)
     ask_whether(m, CONIC_DOUBT_NEAR, CONIC_PART_NEAR, m->z_v >= limits->disc_near, m->z[1] >= limits->disc_near,
@@ -178,6 +178,8 @@ void conic_oracle_uncertain_meet(const oracle_doubting *d, const oracle_uncertai
     take_bounded(g->z, &m->z_v, m->z);
   find_alpha(d, g, m);
   ask_all(d, x, y, m);
+  if (rules->shape == CONIC_SHAPE_SOLID)
+    take_bounded(g->z, &m->z_v, m->z);
   if (m->may_cover)
     take_what_passes(d, m);
   if (rules->shape == CONIC_SHAPE_RAY) {

@@ -15,16 +15,18 @@ static oracle_range range_of(bounded a) {
 /* Tiles from a place on the screen less a radius to that place and it, as the profile rounds them. */
 static void find_tiles(const oracle_doubting *d, const oracle_range *radius, bounded place, int axis,
                        oracle_range *first, oracle_range *behind) {
-  const double size = axis ? d->view->camera->height : d->view->camera->width, most = ceil(size / ORACLE_TILE);
+  const double size = axis ? d->view->camera->height : d->view->camera->width,
+               tile = conic_profile_tile(d->view->rules, d->view->camera);
+  const double most = ceil(size / tile);
   const int is_like_inria = d->view->rules->coverage == CONIC_COVERAGE_TILES;
   const double shift = is_like_inria ? 0.5 : 0.0, rounded = d->model->is_setup_in_float ? 2e-7 : 1e-13;
-  const double ulp = rounded * (fabs(place.v) + radius->high + ORACLE_TILE);
+  const double ulp = rounded * (fabs(place.v) + radius->high + tile);
   const double low = bounded_low(place) - shift - ulp, high = bounded_high(place) - shift + ulp, v = place.v - shift;
   double from[3] = {v - radius->v, low - radius->high, high - radius->low};
   double to[3] = {v + radius->v, low + radius->low, high + radius->high};
   for (int k = 0; k < 3; k++) {
-    to[k] = is_like_inria ? floor((to[k] + ORACLE_TILE - 1) / ORACLE_TILE) : ceil(to[k] / ORACLE_TILE);
-    from[k] = oracle_min(oracle_max(floor(from[k] / ORACLE_TILE), 0.0), most);
+    to[k] = is_like_inria ? floor((to[k] + tile - 1) / tile) : ceil(to[k] / tile);
+    from[k] = oracle_min(oracle_max(floor(from[k] / tile), 0.0), most);
     to[k] = oracle_min(oracle_max(to[k], 0.0), most);
   }
   *first = (oracle_range){from[0], from[1], from[2]};
@@ -115,7 +117,8 @@ static int is_in_tiles(const oracle_projected *p, int is_wide, int x, int y) {
 }
 
 int conic_oracle_lists(const oracle_doubting *d, const oracle_projected *p, int is_by_ellipse, int x, int y) {
-  const double low[2] = {ORACLE_TILE * x, ORACLE_TILE * y}, high[2] = {low[0] + ORACLE_TILE, low[1] + ORACLE_TILE};
+  const double tile = conic_profile_tile(d->view->rules, d->view->camera);
+  const double low[2] = {tile * x, tile * y}, high[2] = {low[0] + tile, low[1] + tile};
   double at[2];
   if (!p->is_shown || x < p->first[0].v || x >= p->behind[0].v || y < p->first[1].v || y >= p->behind[1].v)
     return 0;
@@ -130,8 +133,8 @@ int conic_oracle_may_list(const oracle_projected *p, int x, int y) {
 }
 
 int conic_oracle_has_to_list(const oracle_doubting *d, const oracle_projected *p, int x, int y) {
-  const double low[2] = {ORACLE_TILE * x + 0.5, ORACLE_TILE * y + 0.5};
-  const double high[2] = {low[0] + ORACLE_TILE - 1, low[1] + ORACLE_TILE - 1};
+  const double tile = conic_profile_tile(d->view->rules, d->view->camera);
+  const double low[2] = {tile * x + 0.5, tile * y + 0.5}, high[2] = {low[0] + tile - 1, low[1] + tile - 1};
   oracle_meeting meeting;
   double at[2];
   if (p->may_be_left_out || !is_in_tiles(p, 0, x, y))

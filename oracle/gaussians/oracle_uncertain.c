@@ -7,6 +7,7 @@
 #include <float.h>
 
 #include "oracle/gaussians/oracle_coverage.h"
+#include "oracle/gaussians/oracle_unscented.h"
 
 /* The roundings of any term of the covariance are some 44: quaternions 12, rotations 6, scales 2, view and Jacobian 12,
  * sums 12. A step of the set-up counts as four of them. */
@@ -409,6 +410,28 @@ static int place_ray(const oracle_doubting *d, const bounded_frame *f, oracle_un
   return q >= 0.0 && bound_ray(d, f, g);
 }
 
+/* Along the ray, within the box of the unscented transform. */
+static int place_solid(const oracle_doubting *d, const bounded_frame *f, oracle_uncertain *g) {
+  oracle_unscented u;
+  for (int k = 0; k < 3; k++)
+    if (!(f->scale[k] > 0x1p-23))
+      return 0;
+  if (!place_ray(d, f, g))
+    return 0;
+  conic_oracle_unscent(d->view, f->mean, (const bounded(*)[3])f->axes, g->opacity, f->unit, &u);
+  g->is_here &= u.is_seen;
+  if (u.may_be_seen && !u.is_seen)
+    g->doubts |= 1u << CONIC_DOUBT_NEAR;
+  for (int k = 0; k < 4; k++)
+    ask_everywhere(u.conditions[k], 0.0, k > 0, g);
+  memcpy(g->place, u.place, sizeof g->place);
+  memcpy(g->radius, u.radius, sizeof g->radius);
+  if (d->view->rules->coverage == CONIC_COVERAGE_BOX)
+    conic_oracle_admit_box(d, g->radius, g);
+  g->is_placed = g->is_here || g->doubts;
+  return g->is_placed;
+}
+
 /* The box of the outline at the profile's cutoff: its centre and half its size. */
 static int bound_disc_box(const oracle_doubting *d, const bounded_frame *f, oracle_uncertain *g, bounded extent[2]) {
   const conic_profile_row *rules = d->view->rules;
@@ -515,6 +538,7 @@ int conic_oracle_uncertain_place(const oracle_doubting *d, size_t i, oracle_unce
     return 0;
   int is_drawn = rules->shape == CONIC_SHAPE_ELLIPSE ? bound_ellipse(d, &f, g)
                  : rules->shape == CONIC_SHAPE_RAY   ? place_ray(d, &f, g)
+                 : rules->shape == CONIC_SHAPE_SOLID ? place_solid(d, &f, g)
                                                      : bound_disc(d, &f, g);
   g->opacity = bounded_rounded(g->opacity, ORACLE_FLOAT_UNIT);
   g->z = bounded_rounded(f.mean[2], ORACLE_FLOAT_UNIT);

@@ -18,7 +18,7 @@ run 0 bench --scenes gaussians-1k,sphere-1k --profiles khr-2026 --isa scalar --t
 has '^gaussians-1k@64x48/khr-2026/scalar/1 '
 has '^sphere-1k@64x48/conic/scalar/1 '
 run 0 bench --scenes gaussians-1k --profiles all --threads 1 "${small[@]}" --floor
-[[ $(grep -c '^gaussians' out) -eq 32 ]] || fail "not a line and a floor of each profile: $(cat out)"
+[[ $(grep -c '^gaussians' out) -eq 34 ]] || fail "not a line and a floor of each profile: $(cat out)"
 grep -q '^| resolve\|nan' out && fail "a stage that is not there"
 
 # A file by its camera and framed

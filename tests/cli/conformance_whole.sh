@@ -21,7 +21,7 @@ mkdir pictures
 while IFS=$'\t' read -r name scene camera profile background; do
   [[ $name != L7-* ]] || continue # which takes them long
   case $profile in
-    exact | inria-2023-aa | mip-2023 | brush-1 | splat-2023 | playcanvas-2 | spark-2 | gs3d-0.4) continue ;;
+    exact | inria-2023-aa | mip-2023 | brush-1 | splat-2023 | playcanvas-2 | spark-2 | gs3d-0.4 | 3dgut-2025) continue ;;
     surface) renderer=("$3/tests/plain_splats") ;;
     *) renderer=("$3/tests/plain_renderer" --profile "$profile" --background "$background") ;;
   esac
