@@ -416,8 +416,10 @@ static int place_solid(const oracle_doubting *d, const bounded_frame *f, oracle_
   for (int k = 0; k < 3; k++)
     if (!(f->scale[k] > 0x1p-23))
       return 0;
-  if (!place_ray(d, f, g))
+  if (!place_ray(d, f, g)) {
+    g->is_placed = 0;
     return 0;
+  }
   conic_oracle_unscent(d->view, f->mean, (const bounded(*)[3])f->axes, g->opacity, f->unit, &u);
   g->is_here &= u.is_seen;
   if (u.may_be_seen && !u.is_seen)

@@ -22,7 +22,7 @@ def render(
     size: Optional[Union[str, Sequence[int]]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
         "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
-        "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
+        "playcanvas-2", "spark-2", "gs3d-0.4", "3dgut-2025", "surface"]] = None,
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     quality: Optional[Literal["draft", "good", "final", "sketch"]] = None,
     samples: Optional[int] = None,
@@ -236,9 +236,9 @@ def render(
         length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
         gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026, inria-2023-aa, mip-2023,
-        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
-        others that take the picture's middle for the camera's principal point do so with any camera where
-        :ignore-center stands behind them [exact]
+        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4, 3dgut-2025), or surface: as opaque splats;
+        inria-2023 and others that take the picture's middle for the camera's principal point do so with any
+        camera where :ignore-center stands behind them [exact]
     quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); sketch: draft,
         of at most 30,000 of the raw points, and of levels with --error 2; --method and --samples go first
         [good]
@@ -346,7 +346,7 @@ def verify(
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
         "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
-        "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
+        "playcanvas-2", "spark-2", "gs3d-0.4", "3dgut-2025", "surface"]] = None,
     quality: Optional[Literal["draft", "good", "final", "sketch"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
@@ -441,9 +441,9 @@ def verify(
         length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
         gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026, inria-2023-aa, mip-2023,
-        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
-        others that take the picture's middle for the camera's principal point do so with any camera where
-        :ignore-center stands behind them [exact]
+        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4, 3dgut-2025), or surface: as opaque splats;
+        inria-2023 and others that take the picture's middle for the camera's principal point do so with any
+        camera where :ignore-center stands behind them [exact]
     quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); sketch: draft,
         of at most 30,000 of the raw points, and of levels with --error 2; --method and --samples go first
         [good]
@@ -550,7 +550,7 @@ def judge(
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
         "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
-        "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
+        "playcanvas-2", "spark-2", "gs3d-0.4", "3dgut-2025", "surface"]] = None,
     quality: Optional[Literal["draft", "good", "final", "sketch"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
@@ -655,9 +655,9 @@ def judge(
         length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
         gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026, inria-2023-aa, mip-2023,
-        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
-        others that take the picture's middle for the camera's principal point do so with any camera where
-        :ignore-center stands behind them [exact]
+        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4, 3dgut-2025), or surface: as opaque splats;
+        inria-2023 and others that take the picture's middle for the camera's principal point do so with any
+        camera where :ignore-center stands behind them [exact]
     quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); sketch: draft,
         of at most 30,000 of the raw points, and of levels with --error 2; --method and --samples go first
         [good]
@@ -744,7 +744,7 @@ def project(
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
         "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
-        "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
+        "playcanvas-2", "spark-2", "gs3d-0.4", "3dgut-2025", "surface"]] = None,
     quality: Optional[Literal["draft", "good", "final", "sketch"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
@@ -825,9 +825,9 @@ def project(
         length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
         gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026, inria-2023-aa, mip-2023,
-        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
-        others that take the picture's middle for the camera's principal point do so with any camera where
-        :ignore-center stands behind them [exact]
+        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4, 3dgut-2025), or surface: as opaque splats;
+        inria-2023 and others that take the picture's middle for the camera's principal point do so with any
+        camera where :ignore-center stands behind them [exact]
     quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); sketch: draft,
         of at most 30,000 of the raw points, and of levels with --error 2; --method and --samples go first
         [good]
@@ -935,7 +935,7 @@ def judge_intermediates(
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
         "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
-        "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
+        "playcanvas-2", "spark-2", "gs3d-0.4", "3dgut-2025", "surface"]] = None,
     quality: Optional[Literal["draft", "good", "final", "sketch"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
@@ -1038,9 +1038,9 @@ def judge_intermediates(
         length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
         gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026, inria-2023-aa, mip-2023,
-        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
-        others that take the picture's middle for the camera's principal point do so with any camera where
-        :ignore-center stands behind them [exact]
+        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4, 3dgut-2025), or surface: as opaque splats;
+        inria-2023 and others that take the picture's middle for the camera's principal point do so with any
+        camera where :ignore-center stands behind them [exact]
     quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); sketch: draft,
         of at most 30,000 of the raw points, and of levels with --error 2; --method and --samples go first
         [good]
@@ -1136,7 +1136,7 @@ def explain(
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
         "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
-        "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
+        "playcanvas-2", "spark-2", "gs3d-0.4", "3dgut-2025", "surface"]] = None,
     quality: Optional[Literal["draft", "good", "final", "sketch"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
@@ -1227,9 +1227,9 @@ def explain(
         length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
         gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026, inria-2023-aa, mip-2023,
-        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
-        others that take the picture's middle for the camera's principal point do so with any camera where
-        :ignore-center stands behind them [exact]
+        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4, 3dgut-2025), or surface: as opaque splats;
+        inria-2023 and others that take the picture's middle for the camera's principal point do so with any
+        camera where :ignore-center stands behind them [exact]
     quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); sketch: draft,
         of at most 30,000 of the raw points, and of levels with --error 2; --method and --samples go first
         [good]
@@ -1801,7 +1801,7 @@ def gradient(
     method: Optional[Literal["conic", "ray", "affine", "point", "disc", "auto", "patch"]] = None,
     profile: Optional[Literal["exact", "inria-2023", "gsplat-1.5", "gsplat-1.5-aa", "gsplat-1.6", "gsplat-1.6-aa",
         "2dgs-2024", "2dgs-gsplat", "khr-2026", "inria-2023-aa", "mip-2023", "brush-1", "splat-2023",
-        "playcanvas-2", "spark-2", "gs3d-0.4", "surface"]] = None,
+        "playcanvas-2", "spark-2", "gs3d-0.4", "3dgut-2025", "surface"]] = None,
     quality: Optional[Literal["draft", "good", "final", "sketch"]] = None,
     kernel: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
@@ -1885,9 +1885,9 @@ def gradient(
         length H, as 2x [auto]
     profile: how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5,
         gsplat-1.5-aa, gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026, inria-2023-aa, mip-2023,
-        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4), or surface: as opaque splats; inria-2023 and
-        others that take the picture's middle for the camera's principal point do so with any camera where
-        :ignore-center stands behind them [exact]
+        brush-1, splat-2023, playcanvas-2, spark-2, gs3d-0.4, 3dgut-2025), or surface: as opaque splats;
+        inria-2023 and others that take the picture's middle for the camera's principal point do so with any
+        camera where :ignore-center stands behind them [exact]
     quality: draft (--method conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); sketch: draft,
         of at most 30,000 of the raw points, and of levels with --error 2; --method and --samples go first
         [good]
