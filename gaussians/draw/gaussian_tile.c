@@ -2,6 +2,7 @@
 #include "gaussians/draw/gaussian_tile.h"
 
 #include "core/splats/kernel.h"
+#include "gaussians/draw/ray_hits.h"
 
 static void composite_planes(const conic_gaussian_list *list, uint32_t i_footprint, float z, float w, float before,
                              float after, conic_gaussian_tile *tile, size_t at) {
@@ -55,23 +56,6 @@ static int composite_one(const conic_gaussian_list *list, uint32_t i_footprint, 
   return 1;
 }
 
-/* A pixel's response to a Gaussian that is ordered pixel by pixel. */
-typedef struct hit {
-  float z, alpha;
-  uint32_t footprint;
-} hit;
-
-/* Insertion: the list is nearly in order. What is equally far stays in the order of the list. */
-static void sort_hits(CONIC_STORED hit *hits, size_t n) {
-  for (size_t i = 1; i < n; i++) {
-    hit moved = hits[i];
-    size_t at = i;
-    for (; at > 0 && hits[at - 1].z > moved.z; at--)
-      hits[at] = hits[at - 1];
-    hits[at] = moved;
-  }
-}
-
 static float alpha_of(const conic_gaussian_rules *rules, const CONIC_STORED conic_gaussian_footprint *f, float half_q) {
   float fall = conic_exp_negative(-half_q);
   if (rules->fall_end > 0.0f)
@@ -123,7 +107,7 @@ static meeting meet_ray(const CONIC_STORED conic_gaussian_footprint *f, const CO
 }
 
 static void composite_rays(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
-  CONIC_STORED hit *hits = list->room;
+  CONIC_STORED conic_ray_hit *hits = list->room;
   for (size_t at = 0; at < CONIC_GAUSSIAN_TILE_PIXELS; at++) {
     int x = tile->x + conic_gaussian_column(at), y = tile->y + conic_gaussian_row(at);
     size_t n = 0;
@@ -134,10 +118,10 @@ static void composite_rays(const conic_gaussian_list *list, conic_gaussian_tile 
       meeting m = meet_ray(f, &list->rays[list->entries[i]], x, y);
       float alpha = alpha_of(list->rules, f, m.half_q);
       if (m.z > 0.0f && m.half_q >= 0.0f && alpha >= list->rules->alpha_least)
-        hits[n++] = (hit){m.z, alpha, list->entries[i]};
+        hits[n++] = (conic_ray_hit){m.z, alpha, list->entries[i]};
     }
-    sort_hits(hits, n);
-    for (size_t i = 0; i < n && composite_one(list, hits[i].footprint, hits[i].z, hits[i].alpha, tile, at); i++)
+    conic_sort_hits(hits, n);
+    for (size_t i = 0; i < n && composite_one(list, hits[i].which, hits[i].z, hits[i].alpha, tile, at); i++)
       ;
   }
 }
@@ -165,7 +149,7 @@ static void composite_discs(const conic_gaussian_list *list, conic_gaussian_tile
 #include "gaussians/draw/ray_meetings.h"
 
 static void composite_meetings(const conic_gaussian_list *list, conic_gaussian_tile *tile, int is_filtered) {
-  hit *hits = list->room;
+  conic_ray_hit *hits = list->room;
   for (size_t at = 0; at < CONIC_GAUSSIAN_TILE_PIXELS; at++) {
     int x = tile->x + conic_gaussian_column(at), y = tile->y + conic_gaussian_row(at);
     size_t n = 0;
@@ -177,10 +161,10 @@ static void composite_meetings(const conic_gaussian_list *list, conic_gaussian_t
       float alpha = m.opacity * conic_exp_negative(-m.half_q);
       alpha = alpha < list->rules->alpha_most ? alpha : list->rules->alpha_most;
       if (m.z > 0.0f && m.half_q >= 0.0f && alpha >= list->rules->alpha_least)
-        hits[n++] = (hit){m.z, alpha, list->entries[i]};
+        hits[n++] = (conic_ray_hit){m.z, alpha, list->entries[i]};
     }
-    sort_hits(hits, n);
-    for (size_t i = 0; i < n && composite_one(list, hits[i].footprint, hits[i].z, hits[i].alpha, tile, at); i++)
+    conic_sort_hits(hits, n);
+    for (size_t i = 0; i < n && composite_one(list, hits[i].which, hits[i].z, hits[i].alpha, tile, at); i++)
       ;
   }
 }

@@ -20,6 +20,7 @@ CONIC_INLINE void add_planes_of_footprint(const conic_gaussian_list *list, uint3
 }
 
 enum { BATCH = 256, RAYS_AHEAD = 6 }; /* entries that are taken at a time; how far memory is asked for */
+enum { SORTED_IN_LANES = 2048 };      /* rows at most: what lanes do grows faster than n log n */
 
 CONIC_INLINE meeting_lanes meet_lanes(const CONIC_STORED conic_gaussian_ray *r, lanes dx, lanes dy) {
   lanes g[3], c[3];
@@ -34,6 +35,7 @@ CONIC_INLINE meeting_lanes meet_lanes(const CONIC_STORED conic_gaussian_ray *r, 
 }
 
 #ifndef CONIC_ON_DEVICE /* which has opencl/gaussian_rays.cl */
+#include "gaussians/draw/ray_hits.h"
 #include "gaussians/loops/gaussian_order_lanes.h"
 
 CONIC_INLINE meeting_lanes meet_by_shape(const conic_gaussian_list *list, uint32_t footprint, const gaussian_record *r,
@@ -57,6 +59,7 @@ typedef struct meetings {
   gaussian_record *records;
   uint32_t *blocks;
   float *bounds;           /* of each batch: no z that follows it is below */
+  conic_ray_hit *hits;     /* of one ray, twice */
   size_t n_taken;          /* entries that have a gaussian_record */
   look *looks;             /* of the Gaussians that meet a ray of the vector, */
   lanes_row *z, *alpha;    /* where they do; alpha 0: not that ray */
@@ -75,6 +78,7 @@ static meetings meetings_in_room(const conic_gaussian_list *list) {
   m.looks = (look *)(void *)(m.keys + n);
   m.blocks = (uint32_t *)(void *)(m.looks + n);
   m.bounds = (float *)(void *)(m.blocks + n);
+  m.hits = (conic_ray_hit *)(void *)(m.bounds + n);
   return m;
 }
 
@@ -182,6 +186,21 @@ CONIC_INLINE void mend_order(meetings *m, size_t n) {
     mend_equals(m, n);
 }
 
+/* Puts rows in order ray by ray. What waited comes first, so that of equal depths the earlier stays before. */
+static void sort_long_rows(meetings *m, size_t n) {
+  for (size_t lane = 0; lane < CONIC_LANES; lane++) {
+    size_t n_hits = 0;
+    for (size_t i = 0; i < n; i++) {
+      const uint32_t key = conic_bits_of_float(m->keys[i][lane]);
+      if (m->keys[i][lane] < __builtin_inff())
+        m->hits[n_hits++] = (conic_ray_hit){.z = m->z[key & m->by.numbers][lane], .which = key};
+    }
+    conic_sort_hits(m->hits, n_hits);
+    for (size_t i = 0; i < n; i++)
+      m->keys[i][lane] = i < n_hits ? conic_float_of_bits(m->hits[i].which) : __builtin_inff();
+  }
+}
+
 /* Sorts what waits, and from `first` on what has come. */
 CONIC_INLINE void sort_meetings(meetings *m, size_t first) {
   const depth_keys before = m->by;
@@ -198,6 +217,10 @@ CONIC_INLINE void sort_meetings(meetings *m, size_t first) {
     lanes_mask is_there = lanes_less(lanes_of(0.0f), lanes_load(m->alpha[i]));
     lanes key = key_of_depth(&m->by, lanes_load(m->z[i]), lanes_of_index((uint32_t)i));
     lanes_store(m->keys[m->n_waiting++], lanes_select(is_there, key, lanes_of(__builtin_inff())));
+  }
+  if (n > SORTED_IN_LANES) {
+    sort_long_rows(m, n);
+    return;
   }
   sort_rows(m->keys, n);
   mend_order(m, n);
@@ -274,8 +297,9 @@ CONIC_INLINE void composite_rays_in_vector(const scene *s, meetings *m, size_t p
     const float bound = m->bounds[first / BATCH];
     take_records(list, s->tile, end, m);
     meet_listed(s, m, first, listed, list_block(m->blocks + first, end - first, block, listed), pixel, shape);
-    if (end < list->n && !lanes_any(p.goes_on & lanes_less(m->nearest, lanes_of(bound))))
-      continue;
+    if (end < list->n &&
+        (m->n - n_sorted < m->n_waiting / 4 || !lanes_any(p.goes_on & lanes_less(m->nearest, lanes_of(bound)))))
+      continue; /* else what waits would be sorted with every batch */
     sort_meetings(m, n_sorted);
     composite_before(s, m, bound, &p, wants);
     n_sorted = m->n;

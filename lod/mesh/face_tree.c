@@ -110,8 +110,10 @@ static void fill_boxes(conic_face_tree *tree) {
   for (size_t i = 0; i < tree->n_faces; i++)
     for (int corner = 0; corner < 3; corner++) {
       conic_face_box point;
-      for (int axis = 0; axis < 3; axis++)
-        point.low[axis] = point.high[axis] = tree->mesh->position[axis][tree->mesh->faces[tree->faces[i]][corner]];
+      for (int axis = 0; axis < 3; axis++) {
+        float at = tree->mesh->position[axis][tree->mesh->faces[tree->faces[i]][corner]];
+        point.low[axis] = point.high[axis] = tree->corners[i][corner][axis] = at;
+      }
       add_to_box(&tree->boxes[tree->n_leaves + i / LEAF_FACES], &point);
     }
   for (size_t i = tree->n_leaves - 1; i > 0; i--) {
@@ -130,6 +132,8 @@ conic_status conic_face_tree_build(conic_context *context, const conic_mesh *mes
   conic_status status = tree->faces && tree->boxes ? list_faces(context, adjacency, tree) : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK)
     status = order_faces(context, tree);
+  if (status == CONIC_OK && !(tree->corners = conic_memory_allocate(context, tree->n_faces + 1, sizeof *tree->corners)))
+    status = CONIC_ERROR_MEMORY;
   if (status == CONIC_OK)
     fill_boxes(tree);
   else
@@ -138,7 +142,7 @@ conic_status conic_face_tree_build(conic_context *context, const conic_mesh *mes
 }
 
 void conic_face_tree_release(conic_context *context, conic_face_tree *tree) {
-  conic_memory_release_these(context, tree->faces, tree->boxes);
+  conic_memory_release_these(context, tree->faces, tree->corners, tree->boxes);
   memset(tree, 0, sizeof *tree);
 }
 
@@ -158,7 +162,11 @@ static double distance2_to_box(const conic_face_box *box, const double at[3]) {
 static double distance2_in_leaf(const conic_face_tree *tree, size_t leaf, const double at[3], double least2,
                                 uint32_t *nearest) {
   for (size_t i = leaf * LEAF_FACES; i < (leaf + 1) * LEAF_FACES && i < tree->n_faces; i++) {
-    double distance2 = conic_distance2_to_face(tree->mesh, tree->faces[i], at);
+    double corners[3][3];
+    for (int corner = 0; corner < 3; corner++)
+      for (int axis = 0; axis < 3; axis++)
+        corners[corner][axis] = (double)tree->corners[i][corner][axis];
+    double distance2 = conic_distance2_to_triangle(at, corners[0], corners[1], corners[2]);
     *nearest = distance2 < least2 ? tree->faces[i] : *nearest;
     least2 = distance2 < least2 ? distance2 : least2;
   }

@@ -12,6 +12,7 @@ typedef struct conic_face_tree {
   const conic_mesh *mesh;
   size_t n_faces, n_leaves; /* leaves: a power of two */
   uint32_t *faces;          /* along a curve that fills space */
+  float (*corners)[3][3];   /* of each of these, side by side: a leaf is in few lines of the cache */
   conic_face_box *boxes;    /* from 1 on; the children of node i are 2i and 2i + 1, leaves begin at n_leaves */
 } conic_face_tree;
 

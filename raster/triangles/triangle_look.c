@@ -85,22 +85,20 @@ void conic_triangle_look_at(const conic_triangle_frame *frame, const conic_trian
   uint32_t corners[3];
   conic_triangle_edges_of(record, &edges);
   int64_t e1 = conic_triangle_edge_at(&edges, 1, x, y), e2 = conic_triangle_edge_at(&edges, 2, x, y);
+  *look = (conic_triangle_look){.has_normals = t->normal[0] != NULL}; /* lanes reckon with what is not there, too */
   look->iz = conic_triangle_depth(record, &edges, e1, e2);
   look->first = weight_of(record, &edges, 1, e1);
   look->second = weight_of(record, &edges, 2, e2);
   look->iz_far = conic_triangle_far(record);
   look->iz_near = conic_triangle_near(record);
-  look->texture = NULL;
   take_piece(frame, record, look);
   in_record_order(record, t->corners[record->index], corners);
   for (int channel = 0; channel < 3; channel++) {
     look->color[0][channel] = 1.0f;
-    look->color[1][channel] = look->color[2][channel] = 0.0f;
     if (t->color[0])
       take_color(t->color[channel], corners, channel, look);
   }
   find_face(frame, corners, look->face);
-  look->has_normals = t->normal[0] != NULL;
   if (look->has_normals) {
     uint32_t of_normals[3];
     in_record_order(record, t->normal_corners ? t->normal_corners[record->index] : t->corners[record->index],
