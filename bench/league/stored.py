@@ -179,7 +179,29 @@ def playcanvas(scene, eye):
     scene["opacity"] = (np.floor(np.clip(half(scene["opacity"]), 0, 1).astype(float) * 255 + 0.5) / 255).astype(F)
 
 
-PROGRAMS = {"splat": splat, "gs3d": gs3d, "playcanvas": playcanvas}
+def spark(scene, eye):
+    """Spark 2 with ext splats, splat_encode.rs:127-136 and splatDefines.glsl: halfs of opacity, colour and ln s;
+    quaternions of an axis of 10 and 10 bits on an octahedron and an angle of 12."""
+    color = half(scene["sh"][:, 0] * C0 + F(0.5))
+    scene["color"] = half(color + harmonics(scene["sh"][:, 1:], directions(scene, eye)))
+    scene["opacity"] = half(scene["opacity"])
+    scene["scale"] = np.exp(half(np.log(scene["scale"])).astype(float)).astype(F)
+    q = unit(scene["rotation"]).astype(float)
+    angle = 2 * np.arccos(np.clip(q[:, 0], 0, 1))
+    s = np.sin(angle / 2)[:, None]
+    axis = np.where(np.abs(s) < 1e-6, [1.0, 0, 0], q[:, 1:] / np.where(np.abs(s) < 1e-6, 1, s))
+    p = axis[:, :2] / np.abs(axis).sum(1, keepdims=True)
+    p = np.where(axis[:, 2:] < 0, (1 - np.abs(p[:, ::-1])) * np.where(p >= 0, 1, -1), p)
+    p = np.floor(np.clip((p * 0.5 + 0.5) * 1023, 0, 1023) + 0.5) / 1023 * 2 - 1
+    angle = np.floor(np.clip(angle / np.pi * 4095, 0, 4095) + 0.5) / 4095 * np.pi
+    z = 1 - np.abs(p).sum(1, keepdims=True)
+    t = np.maximum(-z, 0)
+    axis = np.concatenate((p + np.where(p >= 0, -t, t), z), 1)
+    axis /= np.linalg.norm(axis, axis=1, keepdims=True)
+    scene["rotation"] = np.concatenate((np.cos(angle / 2)[:, None], axis * np.sin(angle / 2)[:, None]), 1).astype(F)
+
+
+PROGRAMS = {"splat": splat, "gs3d": gs3d, "playcanvas": playcanvas, "spark": spark}
 
 
 def store(program, scene, camera, out, order=None):

@@ -42,6 +42,7 @@ typedef struct conic_profile_row {
   double axis_share;         /* likewise, as a share of the picture's shorter side */
   double axis_seen;          /* px: what is shorter along its longer axis is left out */
   double spread_least;       /* px²: half the difference of the variances along the axes is not less */
+  int spread_cancels;        /* that half is found as √(middle² − det), which in floats is off where it is small */
   double greatest_half_q;    /* nothing lies beyond; 0: no such border */
   double fall_end;           /* e, where the falloff is (e^(−q/2) − e)/(1 − e), which is 0 there; 0: e^(−q/2) */
   double fade_z;             /* nearer, opacity and colour fade, linearly in 1/z, to nothing at near_z; 0: not */

@@ -214,7 +214,7 @@ static void bound_direction(const oracle_doubting *d, const bounded c[3], bounde
     across[2] = bounded_divide(square_of(down, unit), squares, unit);
   }
   const double down = spread.v - apart.v, length = sqrt(c[1].v * c[1].v + down * down);
-  const double turned = d->model->is_setup_in_float ? 8.0 * unit * bounded_high(first) / length : 0.0;
+  const double turned = d->model->is_setup_in_float ? (8.0 * unit * bounded_high(first) + 2.0 * own.off) / length : 0.0;
   for (int k = 0; k < 3; k++)
     across[k].off = oracle_min(across[k].off + (turned >= 0.0 ? turned : 2.0), 2.0);
 }
@@ -225,7 +225,10 @@ static int bound_limited_form(const oracle_doubting *d, const bounded c[3], boun
   const double unit = d->model->setup_roundoff, longest = conic_oracle_longest_axis(d->view), most = longest * longest;
   bounded middle = bounded_scale(0.5, bounded_add(c[0], c[2], unit), unit), across[3];
   bounded apart = bounded_scale(0.5, bounded_subtract(c[0], c[2], unit), unit);
-  bounded own = bounded_root(bounded_add(square_of(apart, unit), square_of(c[1], unit), unit), unit);
+  bounded squares = bounded_add(square_of(apart, unit), square_of(c[1], unit), unit);
+  if (rules->spread_cancels && d->model->is_setup_in_float)
+    squares.off += 6.0 * unit * middle.v * middle.v;
+  bounded own = bounded_root(squares, unit);
   bounded spread = bounded_within(own, rules->spread_least, INFINITY), first = bounded_add(middle, spread, unit);
   bounded second = bounded_low(own) > rules->spread_least && !d->model->is_setup_in_float
                        ? bounded_divide(area, first, unit)
