@@ -140,13 +140,16 @@ def splat(scene, eye):
 
 
 def gs3d(scene, eye):
-    """GaussianSplats3D, INRIAV1PlyParser.js:130-152: colours and opacities of 8 bits, cut off; SplatMesh.js:939-943: the
+    """GaussianSplats3D, INRIAV1PlyParser.js:130-152: colours and opacities of 8 bits, cut off;
+    harmonics up to degree 2, cut off to 16 bits (SplatMesh.js:1325); SplatMesh.js:939-943: the
     last Gaussian of a scene keeps the first of its six covariances and loses the others."""
     sigma = covariances(scene, unit(scene["rotation"]))[-1]
     scene["scale"][-1] = np.sqrt(sigma[0, 0]), 0, 0
     scene["rotation"] = unit(scene["rotation"])
     scene["rotation"][-1] = 1, 0, 0, 0
-    scene["color"] = np.floor(np.clip((scene["sh"][:, 0].astype(float) * 0.28209479177387814 + 0.5) * 255, 0, 255)).astype(F) / F(255)
+    color = np.floor(np.clip((scene["sh"][:, 0].astype(float) * 0.28209479177387814 + 0.5) * 255, 0, 255)).astype(F) / F(255)
+    rest = half(scene["sh"][:, 1:9], 10)
+    scene["color"] = np.clip(color + harmonics(rest, directions(scene, eye)), 0, 1) if rest.shape[1] else color
     scene["opacity"] = np.floor(np.clip(scene["opacity"] * 255, 0, 255)).astype(F) / F(255)
 
 
@@ -183,7 +186,12 @@ def spark(scene, eye):
     """Spark 2 with ext splats, splat_encode.rs:127-136 and splatDefines.glsl: halfs of opacity, colour and ln s;
     quaternions of an axis of 10 and 10 bits on an octahedron and an angle of 12."""
     color = half(scene["sh"][:, 0] * C0 + F(0.5))
-    scene["color"] = half(color + harmonics(scene["sh"][:, 1:], directions(scene, eye)))
+    rest = scene["sh"][:, 1:].astype(float)
+    with np.errstate(divide="ignore"):  # (:286-297) 8 bits of the power of two below the largest channel: more is cut off
+        power = np.exp2(np.clip(np.floor(np.log2(np.abs(rest).max(2, keepdims=True))), -15, 16))
+    rest = np.sign(rest) * np.floor(np.minimum(np.abs(rest) / power * 255, 255) + 0.5) / 255 * power
+    rest[:, 3:4] = rest[:, 8:] = 0  # ext_splats.rs:521 keeps the first of degree 2 from its texture, ExtSplats.ts:206 degree 3
+    scene["color"] = half(color + harmonics(rest.astype(F), directions(scene, eye)))
     scene["opacity"] = half(scene["opacity"])
     scene["scale"] = np.exp(half(np.log(scene["scale"])).astype(float)).astype(F)
     q = unit(scene["rotation"]).astype(float)
@@ -201,7 +209,12 @@ def spark(scene, eye):
     scene["rotation"] = np.concatenate((np.cos(angle / 2)[:, None], axis * np.sin(angle / 2)[:, None]), 1).astype(F)
 
 
-PROGRAMS = {"splat": splat, "gs3d": gs3d, "playcanvas": playcanvas, "spark": spark}
+def gausscam(scene, eye):
+    """gausscam, README: harmonics of degree 0 alone, and unit quaternions."""
+    scene["color"] = scene["sh"][:, 0] * C0 + F(0.5)
+
+
+PROGRAMS = {"splat": splat, "gs3d": gs3d, "playcanvas": playcanvas, "spark": spark, "gausscam": gausscam}
 
 
 def store(program, scene, camera, out, order=None):
