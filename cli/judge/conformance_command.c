@@ -55,9 +55,9 @@ static void name_case(const suite_case *one, char name[SUITE_PATH_ROOM]) {
 
 /* --- the cases --- */
 
-/* The first level, which is looked at; a suite with all in both formats would be too large. */
+/* The first scene, which is looked at; a suite with all in both formats would be too large. */
 static int has_exr(const suite_scene *scene) {
-  return scene->asset || (scene->recipe.n == 0 && (scene->level == 1 || scene->make_splats));
+  return scene->asset || scene == cli_suite_scenes || scene->make_splats;
 }
 
 static int is_made(const conformance_job *job, const suite_scene *scene) {

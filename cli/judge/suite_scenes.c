@@ -376,7 +376,7 @@ conic_status cli_suite_make(conic_context *context, const suite_scene *scene, co
 #define SMALL .width = 36, .height = 20, .center = {18.0, 10.0}
 #define TINY .width = 20, .height = 12, .center = {10.0, 6.0}
 #define LARGE .width = 640, .height = 360, .center = {320.0, 180.0}, .step = 15
-#define MIDDLE .width = 50, .height = 38, .center = {25.0, 19.0}
+#define MIDDLE .width = 44, .height = 30, .center = {22.0, 15.0}
 #define AHEAD .rotation = {1.0, 0.0, 0.0, 0.0}, .eye = {0.0, 0.0, -4.0}, .focal = {32.0, 32.0}
 #define AT_ORIGIN .rotation = {1.0, 0.0, 0.0, 0.0}, .focal = {32.0, 32.0}
 #define AS_IT_IS .rotation = {1.0, 0.0, 0.0, 0.0}

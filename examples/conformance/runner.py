@@ -22,7 +22,8 @@ import conic
 
 def by_conic(profile):
     def draw(scene, camera, background):
-        picture = conic.render(scene, camera, profile=profile, background=background, planes=("rgba", "Z"))
+        behind = {"background": background} if any(background) else {}
+        picture = conic.render(scene, camera, profile=profile, plain=True, planes=("rgba", "Z"), **behind)
         return picture["rgba"], picture["Z"]
     return draw
 

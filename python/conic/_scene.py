@@ -262,9 +262,8 @@ class Scene:
             try:
                 n_scales = 3 if read.scale[2] else 2
                 return Gaussians(
-                    tuple(_copy(place, read.count) for place in read.position),
-                    tuple(_copy(place, read.count) for place in read.rotation),
-                    tuple(_copy(place, read.count) for place in list(read.scale)[:n_scales]),
+                    _copies(read.position, read.count), _copies(read.rotation, read.count),
+                    _copies(list(read.scale)[:n_scales], read.count),
                     _copy(read.opacity, read.count),
                     _copy(read.sh, read.count * (read.sh_degree + 1)**2 * 3).reshape(read.count, -1, 3),
                     frame=read.frame.decode(), antialiased=bool(read.is_antialiased), linear=bool(read.is_linear),
@@ -283,8 +282,8 @@ class Scene:
                     member = getattr(points, name)
                     places = [member] if name in ("opacity", "dot", "scalar") else list(member)
                     if places[0]:
-                        found = tuple(_copy(place, points.count) for place in places)
-                        arrays[name] = found if len(found) > 1 else found[0]
+                        arrays[name] = (_copies(places, points.count) if len(places) > 1 else
+                                        _copy(places[0], points.count))
                 return Splats(origin=list(points.origin), **arrays)
             finally:
                 library.conic_model_release(made, ctypes.byref(read))
@@ -316,6 +315,12 @@ def _copy(place: Any, count: int) -> numpy.ndarray:
     if not count:
         return numpy.zeros(0, numpy.float32)
     return numpy.ctypeslib.as_array((ctypes.c_float * count).from_address(place)).copy()
+
+
+def _copies(places: Sequence[Any], count: int) -> Any:
+    """Components; but rows where as many components as rows would be taken for rows."""
+    found = tuple(_copy(place, count) for place in places)
+    return numpy.stack(found, axis=1) if count == len(found) else found
 
 
 AnyScene = Union[PathLike, Scene, Splats, Mesh, Gaussians, Sequence[Any]]

@@ -158,6 +158,10 @@ class Arrays(unittest.TestCase):
             self.assert_same(conic.render(again, size=SIZE, profile=profile), wanted) if profile != "surface" else None
             self.assert_same(conic.render(made, size=SIZE, profile=profile), wanted)
         self.assertEqual(conic.render(arrays, size=SIZE, profile="surface")["rgba"].shape, (72, 96, 4))
+        for n in (1, 2, 3, 4):  # as many rows as there may be components
+            few = conic.make("gaussians", n=n, seed=3)
+            self.assert_same(conic.render(few.gaussians(), size=SIZE), hashes(few.path, *WORDS))
+            self.assertEqual(few.gaussians().means.shape, (n, 3))
         with self.assertRaisesRegex(conic.ArgumentError, "sh: its shape"):
             conic.Gaussians(arrays.means, arrays.quats, arrays.scales, arrays.opacities, arrays.sh[:, :5])
 

@@ -1,0 +1,57 @@
+#!/usr/bin/env bash
+# The runners of examples/conformance, of C, Python and a browser's page, draw the suite rightly, and a wrong one is
+# told; and what the guide's recipes for CI run works.
+set -uo pipefail
+
+source "$1/tests/support/program.bash"
+export CONIC=$conic
+examples=$1/examples/conformance
+run 0 conformance suite --profile gsplat-1.6 --level 2
+suite_of() { # FOLDER [OPTIONS]
+  judged=$("$conic" judge --suite suite --pictures "$1" --profile gsplat-1.6 --level 2 "${@:2}" 2>&1)
+}
+
+if command -v cc > /dev/null; then
+  cc -O1 -Wall -Werror "$examples/runner.c" -o runner -lm || fail "runner.c"
+  mkdir c && ./runner suite c gsplat-1.6 || fail "the runner in C ends"
+  suite_of c || fail "the runner in C: $judged"
+  sed 's/+ 0\.15 \* size/+ 0.65 * size/g; s/0\.3, 0\.0, 0\.3/0.1, 0.0, 0.1/' "$examples/gsplat_draw.h" > gsplat_draw.h
+  cp "$examples/runner.c" . && cc -O1 runner.c -o wrong -lm && mkdir wrong-c && ./wrong suite wrong-c gsplat-1.6
+  suite_of wrong-c && fail "a wrong dilation is right"
+fi
+
+if command -v node > /dev/null; then
+  python3 "$examples/browser/server.py" --port 0 --level 1 --once > served 2>&1 &
+  server=$!
+  for ((i = 0; i < 600; i++)); do
+    [[ -s served ]] && break || sleep 0.1
+  done
+  cat > page.mjs << END
+import { draw } from '$examples/browser/draw.mjs';
+import { runSuite } from '$examples/browser/runner.mjs';
+const base = '$(cat served)'.replace(/\/\$/, '');
+const refused = await fetch(base + '/pictures/..%2Fescaped', { method: 'POST', headers: { 'X-Width': 1, 'X-Height': 1 }, body: new Float32Array(4) });
+const page = await (await fetch(base + '/')).text();
+const verdict = await runSuite(draw, () => {}, base);
+console.log(verdict.text);
+process.exit(refused.status === 400 && page.includes('runner.mjs') ? verdict.exitCode : 1);
+END
+  node page.mjs > told 2>&1 || fail "the page: $(tail -5 told)"
+  wait $server || fail "the server ends with $?"
+fi
+
+# The recipes: their lines of conic and of a renderer, as they stand, with conic on the path.
+guide=$1/docs/guide/trust.md
+mkdir -p path ci tests && ln -s "$conic" path/conic
+for recipe in github gitlab; do
+  rm -rf suite pictures
+  sed -n "/^<!-- $recipe -->/,/^\`\`\`\$/p" "$guide" | sed -n 's/^ *\(- run: \|- \)\{0,1\}\(\(conic\|python3\) .*\)/\2/p' > lines
+  [[ $(wc -l < lines) -ge 3 ]] || fail "$recipe: the recipe has no lines: $(cat lines)"
+  cp "$examples/numpy-renderer.py" tests/draw.py
+  PATH=$PWD/path:$PATH bash -e lines > told 2>&1 || fail "$recipe: $(tail -5 told)"
+  grep -q 'failures="0"' report.xml || fail "$recipe: $(head -3 report.xml)"
+  sed -i 's/+ 0\.3 \* np\.eye/+ 0.1 * np.eye/' tests/draw.py
+  rm -rf suite pictures
+  PATH=$PWD/path:$PATH bash -e lines > told 2>&1 && fail "$recipe: a wrong renderer passes"
+done
+[[ $failures -eq 0 ]]
