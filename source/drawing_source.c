@@ -263,13 +263,6 @@ static conic_drawing_range range_of_input(const drawing_source *d, size_t i) {
                                {is_first || !has_normals ? 0 : normals[i - 1], has_normals ? normals[i] : 0}};
 }
 
-static int is_at_rest(const conic_source_pose *pose) {
-  conic_source_pose rest;
-  conic_source_pose_init(&rest);
-  return memcmp(rest.world_from_rest, pose->world_from_rest, sizeof rest.world_from_rest) == 0 && !pose->shapes[0] &&
-         (!pose->shapes[1] || pose->part == 0.0);
-}
-
 static conic_status check_pose_shapes(const drawing_source *d, const conic_source_pose *poses) {
   for (size_t i = 0; i < d->n_inputs; i++) {
     const conic_drawing_range range = range_of_input(d, i);
@@ -292,7 +285,7 @@ static conic_status move_drawing(conic_source *source, const conic_source_pose *
     return conic_fail(source->context, CONIC_ERROR_ARGUMENT, "%s: %zu poses for %zu inputs", source->name, n_poses,
                       d->n_inputs);
   for (size_t i = 0; poses && i < n_poses; i++)
-    is_still &= is_at_rest(&poses[i]);
+    is_still &= conic_pose_is_at_rest(&poses[i]);
   if (poses)
     status = check_pose_shapes(d, poses);
   if (status == CONIC_OK && is_still && source->is_moved) /* what was kept of it belongs to another picture */
@@ -311,7 +304,7 @@ static conic_status move_drawing(conic_source *source, const conic_source_pose *
   }
   for (size_t i = 0; i < n_poses; i++) {
     const conic_drawing_range range = range_of_input(d, i);
-    conic_moved_put(source->context, &rest, &range, is_at_rest(&poses[i]) ? NULL : &poses[i], &d->moved,
+    conic_moved_put(source->context, &rest, &range, conic_pose_is_at_rest(&poses[i]) ? NULL : &poses[i], &d->moved,
                     &d->moved_triangles);
   }
   source->is_moved = 1;

@@ -2,7 +2,6 @@
 
 #include <stdarg.h>
 
-
 void conic_facts_destroy(conic_facts *facts) {
   if (facts)
     conic_memory_release(facts->context, facts);

@@ -28,9 +28,9 @@ static const char *take_entry(const char *text, size_t *input, conic_text_word *
   return *end ? end + 1 : end;
 }
 
-/* The scale and the rotation of a matrix; what is wrong with it, or null. */
-static const char *find_parts(conic_place *p) {
+const char *conic_place_find_parts(conic_place *p) {
   double across[3];
+  p->is_moved = 1;
   const double(*m)[4] = (const double(*)[4])p->matrix;
   conic_cross(m[0], m[1], across);
   const double volume = conic_dot(across, m[2]);
@@ -69,8 +69,7 @@ static const char *read_place(conic_text_word text, conic_place *p) {
   for (size_t row = 0; row < 3; row++)
     for (size_t column = 0; column < 4; column++)
       p->matrix[row][column] = n > 3 ? numbers[4 * row + column] : column == 3 ? numbers[row] : (double)(row == column);
-  p->is_moved = 1;
-  return find_parts(p);
+  return conic_place_find_parts(p);
 }
 
 conic_status conic_places_read(conic_context *context, const char *text, size_t n, conic_place *places) {

@@ -9,6 +9,9 @@ typedef struct conic_place {
   int is_moved;
 } conic_place;
 
+/* Fills in a place from its matrix. Returns what is wrong with that; null: nothing. */
+const char *conic_place_find_parts(conic_place *place);
+
 /* Reads conic_source_options.place for n inputs into `places`. Errors: ARGUMENT. */
 conic_status conic_places_read(conic_context *context, const char *text, size_t n, conic_place *places);
 

@@ -9,6 +9,13 @@ size_t conic_triangles_normals(const conic_triangles *triangles) {
   return !triangles->normal[0] ? 0 : triangles->normal_corners ? triangles->n_normals : triangles->n_vertices;
 }
 
+int conic_pose_is_at_rest(const conic_source_pose *pose) {
+  conic_source_pose rest;
+  conic_source_pose_init(&rest);
+  return memcmp(rest.world_from_rest, pose->world_from_rest, sizeof rest.world_from_rest) == 0 && !pose->shapes[0] &&
+         (!pose->shapes[1] || pose->part == 0.0);
+}
+
 /* --- room --- */
 
 static conic_status own_arrays(conic_context *context, float *arrays[3], size_t n) {

@@ -8,6 +8,9 @@ typedef struct conic_drawing_range {
   size_t splats[2], vertices[2], normals[2];
 } conic_drawing_range;
 
+/* Whether a pose leaves its input as the file has it. */
+int conic_pose_is_at_rest(const conic_source_pose *pose);
+
 /* How many normals there are, at corners or at vertices. */
 size_t conic_triangles_normals(const conic_triangles *triangles);
 

@@ -89,6 +89,7 @@ void conic_gaussians_source_close(conic_source *source) {
   gaussians_source *g = (gaussians_source *)source;
   if (!g->is_lent)
     conic_gaussians_release(source->context, &g->gaussians);
+  conic_gaussians_release(source->context, &g->rest);
   conic_source_close(g->surfaces);
   conic_memory_release(source->context, g->inputs);
 }

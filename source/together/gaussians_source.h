@@ -12,7 +12,8 @@ typedef struct conic_among_input {
 
 typedef struct conic_gaussians_source {
   conic_source base;
-  conic_gaussians gaussians; /* of all inputs that are scenes, one after the other */
+  conic_gaussians gaussians; /* of all inputs that are scenes, one after the other, where they are now */
+  conic_gaussians rest;      /* … and at rest, while something moves; else empty */
   int is_lent;               /* the Gaussians are a caller's */
   conic_gaussian_options options;
   conic_gaussian_statistics drawn;

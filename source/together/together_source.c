@@ -6,6 +6,7 @@
 #include "core/splats/near.h"
 #include "gaussians/scene/gaussian_set.h"
 #include "source/input_places.h"
+#include "source/moved_drawing.h"
 #include "source/together/gaussians_source.h"
 
 /* --- scenes --- */
@@ -213,14 +214,119 @@ static conic_status open_scene(conic_source *source, const char *const *paths, s
   return status == CONIC_OK ? conic_gaussians_source_measure(g) : status;
 }
 
-/* Neither would know of the other's way. */
-static conic_status refuse_to_move(conic_source *source, const conic_source_pose *poses, size_t n_poses) {
-  (void)n_poses;
-  return !poses
-             ? CONIC_OK
-             : conic_fail(source->context, CONIC_ERROR_UNSUPPORTED,
-                          "%s: Gaussian scenes and surfaces among them rest; --place says where, and each moves alone",
-                          source->name);
+/* --- what moves --- */
+
+/* Moves a scene as the pose of input i says. */
+static conic_status pose_scene(conic_gaussians_source *g, size_t i, const conic_source_pose *pose, conic_gaussians *set,
+                               int *is_lent) {
+  conic_context *context = g->base.context;
+  conic_place place = {.is_moved = 0};
+  if (pose->shapes[0] || pose->shapes[1])
+    return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: the Gaussians of input %zu have one shape", g->base.name,
+                      i);
+  memcpy(place.matrix, pose->world_from_rest, sizeof place.matrix);
+  const char *fault = conic_pose_is_at_rest(pose) ? NULL : conic_place_find_parts(&place);
+  return fault ? conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: input %zu: %s", g->base.name, i, fault)
+               : place_scene(context, &place, set->frame, set, is_lent);
+}
+
+/* The Gaussians of input i, which stay those of all. */
+static conic_gaussians scene_of(const conic_gaussians_source *g, const conic_gaussians *all, size_t i) {
+  const size_t first = g->inputs[i].first_id, n_harmonics = first * conic_harmonics_of_degree(all->sh_degree);
+  conic_gaussians set = *all;
+  float **columns[CONIC_MOST_GAUSSIAN_COLUMNS];
+  size_t end = all->count;
+  for (size_t k = g->n_inputs; k-- > i + 1;)
+    end = g->inputs[k].is_gaussian ? g->inputs[k].first_id : end;
+  for (int c = conic_gaussians_list_columns(&set, columns) - 1; c >= 0; c--)
+    *columns[c] += first;
+  set.sh = all->sh ? all->sh + n_harmonics : NULL;
+  set.sh_half = all->sh_half ? all->sh_half + n_harmonics : NULL;
+  set.count = end - first;
+  return set;
+}
+
+/* All scenes in one list, each where its pose has it. */
+static conic_status pose_scenes(conic_gaussians_source *g, const conic_source_pose *poses, conic_gaussians *moved) {
+  conic_context *context = g->base.context;
+  const conic_gaussians *rest = g->rest.count ? &g->rest : &g->gaussians;
+  conic_gaussians *sets = conic_memory_allocate_zeroed(context, g->n_inputs, sizeof *sets);
+  int *are_lent = conic_memory_allocate_zeroed(context, g->n_inputs, sizeof *are_lent);
+  conic_status status = sets && are_lent ? CONIC_OK : CONIC_ERROR_MEMORY;
+  size_t n = 0;
+  for (size_t i = 0; i < g->n_inputs && status == CONIC_OK; i++) {
+    if (!g->inputs[i].is_gaussian)
+      continue;
+    sets[n] = scene_of(g, rest, i);
+    are_lent[n] = 1;
+    status = pose_scene(g, i, &poses[i], &sets[n], &are_lent[n]);
+    n++;
+  }
+  if (status == CONIC_OK)
+    status = join_scenes(context, sets, n, moved);
+  for (size_t i = 0; i < n; i++)
+    if (!are_lent[i])
+      conic_gaussians_release(context, &sets[i]);
+  conic_memory_release_these(context, sets, are_lent);
+  return status;
+}
+
+/* Moves the surfaces by the poses that are of them; null: they rest. */
+static conic_status pose_surfaces(conic_gaussians_source *g, const conic_source_pose *poses) {
+  conic_context *context = g->base.context;
+  conic_source_pose *own = poses ? conic_memory_allocate(context, g->n_inputs, sizeof *own) : NULL;
+  size_t n = 0;
+  if (poses && !own)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; own && i < g->n_inputs; i++)
+    if (!g->inputs[i].is_gaussian)
+      own[n++] = poses[i];
+  conic_status status = conic_source_move(g->surfaces, own, n);
+  conic_memory_release(context, own);
+  return status;
+}
+
+static void join_boxes(conic_gaussians_source *g) {
+  conic_source *source = &g->base;
+  double minimum[3], maximum[3];
+  conic_gaussians_bounds(&g->gaussians, source->moved_minimum, source->moved_maximum);
+  if (!g->surfaces)
+    return;
+  conic_source_box(g->surfaces, minimum, maximum);
+  for (int axis = 0; axis < 3; axis++) {
+    source->moved_minimum[axis] = fmin(source->moved_minimum[axis], minimum[axis]);
+    source->moved_maximum[axis] = fmax(source->moved_maximum[axis], maximum[axis]);
+  }
+}
+
+static conic_status move_together(conic_source *source, const conic_source_pose *poses, size_t n_poses) {
+  conic_gaussians_source *g = (conic_gaussians_source *)source;
+  conic_gaussians moved = {.count = 0};
+  int is_still = 1;
+  if (poses && n_poses != g->n_inputs)
+    return conic_fail(source->context, CONIC_ERROR_ARGUMENT, "%s: %zu poses for %zu inputs", source->name, n_poses,
+                      g->n_inputs);
+  for (size_t i = 0; poses && i < n_poses; i++)
+    is_still &= !g->inputs[i].is_gaussian || conic_pose_is_at_rest(&poses[i]);
+  conic_status status = is_still ? CONIC_OK : pose_scenes(g, poses, &moved);
+  if (status == CONIC_OK && g->surfaces)
+    status = pose_surfaces(g, poses);
+  if (status != CONIC_OK) {
+    conic_gaussians_release(source->context, &moved);
+    return status;
+  }
+  if (g->rest.count || !is_still) { /* the set in use is one that moved, or it becomes the one at rest */
+    if (g->rest.count)
+      conic_gaussians_release(source->context, &g->gaussians);
+    else
+      g->rest = g->gaussians;
+    g->gaussians = is_still ? g->rest : moved;
+    if (is_still)
+      memset(&g->rest, 0, sizeof g->rest);
+  }
+  source->is_moved = !is_still || (g->surfaces && g->surfaces->is_moved);
+  join_boxes(g);
+  return CONIC_OK;
 }
 
 #define KIND_OF_GAUSSIANS(its_abilities, its_company, its_open, its_input_of, its_move)                                \
@@ -234,7 +340,7 @@ static conic_status refuse_to_move(conic_source *source, const conic_source_pose
 const conic_source_kind conic_source_kind_gaussians =
                             KIND_OF_GAUSSIANS(CONIC_SOURCE_COMPOSITES, CONIC_SOURCE_SINGLE, open_scene, NULL, NULL),
                         conic_source_kind_scenes = KIND_OF_GAUSSIANS(CONIC_SOURCE_COMPOSITES, CONIC_SOURCE_ALIKE,
-                                                                     open_together, find_input, NULL),
+                                                                     open_together, find_input, move_together),
                         conic_source_kind_together =
                             KIND_OF_GAUSSIANS(CONIC_SOURCE_COMPOSITES | CONIC_SOURCE_MIXES, CONIC_SOURCE_MANY,
-                                              open_together, find_input, refuse_to_move);
+                                              open_together, find_input, move_together);

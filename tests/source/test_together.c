@@ -306,12 +306,6 @@ static void check_shadow(conic_context *context, const char *const names[2]) {
                         conic_srgb_decode((double)pixel_of(&plain, MIDDLE + k)[0]);
     CHECK_NEAR(part, 1.0 - 0.8 * exp(-0.5 * q), 0.006);
   }
-  conic_source_pose poses[2];
-  conic_source_pose_init(&poses[0]);
-  conic_source_pose_init(&poses[1]);
-  poses[1].world_from_rest[0][3] = 1.0;
-  CHECK(conic_source_move(source, poses, 2) == CONIC_ERROR_UNSUPPORTED &&
-        conic_source_move(source, NULL, 0) == CONIC_OK);
   shot.catchers = 2; /* the wall, of which the shadow is left */
   shot.planes = 1u << CONIC_PLANE_RGBA;
   conic_image caught = draw(context, source, &shot);
@@ -332,6 +326,52 @@ static void check_shadow(conic_context *context, const char *const names[2]) {
   conic_gaussians_release(context, &ball);
 }
 
+/* What moves is where --place would have it, shadows and all; and it comes back. */
+static void check_motion(conic_context *context, const char *const names[2]) {
+  static const char *const places[] = {"0:0.25,0,0.5", "1:0,0,0.5", "0:0.25,0,0.5;1:0,0,0.5"};
+  conic_gaussians ball = balls(context, 3, 1.5, 0.5, 0.8f);
+  conic_triangles set = wall(context, 3.0, 0.1, 0.5f);
+  conic_shot shot = shot_of(CONIC_PROFILE_GSPLAT_1_6);
+  conic_take_back_loans(context);
+  CHECK_OK(conic_lend(context, names[0], &ball));
+  CHECK_OK(conic_lend(context, names[1], &set));
+  conic_source *source = open_scene(context, names, 2, NULL);
+  shot.light.has_shadows = 1;
+  conic_image at_rest = draw(context, source, &shot);
+  for (size_t i = 0; i < 3; i++) {
+    conic_source *placed = open_scene(context, names, 2, places[i]);
+    conic_source_pose poses[2];
+    double minimum[3], maximum[3];
+    for (size_t k = 0; k < 2; k++) {
+      conic_source_pose_init(&poses[k]);
+      if (k == i || i == 2) {
+        poses[k].world_from_rest[0][3] = k ? 0.0 : 0.25;
+        poses[k].world_from_rest[2][3] = 0.5;
+      }
+    }
+    CHECK_OK(conic_source_move(source, poses, 2));
+    conic_image moved = draw(context, source, &shot), right = draw(context, placed, &shot);
+    CHECK(is_same(&moved, &right) && !is_same(&moved, &at_rest));
+    conic_source_box(source, minimum, maximum);
+    CHECK(memcmp(minimum, conic_source_measure(placed)->minimum, sizeof minimum) == 0 &&
+          memcmp(maximum, conic_source_measure(placed)->maximum, sizeof maximum) == 0);
+    conic_image_release(context, &moved);
+    conic_image_release(context, &right);
+    conic_source_close(placed);
+    poses[0].world_from_rest[0][0] = 2.0; /* which stretches */
+    CHECK(conic_source_move(source, poses, 2) == CONIC_ERROR_UNSUPPORTED);
+    CHECK(conic_source_move(source, poses, 1) == CONIC_ERROR_ARGUMENT);
+  }
+  CHECK_OK(conic_source_move(source, NULL, 0));
+  conic_image again = draw(context, source, &shot);
+  CHECK(is_same(&again, &at_rest));
+  conic_image_release(context, &again);
+  conic_image_release(context, &at_rest);
+  conic_source_close(source);
+  conic_triangles_release(context, &set);
+  conic_gaussians_release(context, &ball);
+}
+
 int main(void) {
   const char *const names[] = {"memory:gaussians:ball", "memory:triangles:wall"};
   folder_make(files_folder);
@@ -344,6 +384,7 @@ int main(void) {
   check_profiles(context, names, 1);
   check_scenes(context);
   check_shadow(context, names);
+  check_motion(context, names);
   conic_gaussians_release(context, &ball);
   files_end(context);
   return check_result();
