@@ -298,7 +298,7 @@ CONIC_INLINE void composite_rays_in_vector(const scene *s, meetings *m, size_t p
     take_records(list, s->tile, end, m);
     meet_listed(s, m, first, listed, list_block(m->blocks + first, end - first, block, listed), pixel, shape);
     if (end < list->n &&
-        (m->n - n_sorted < m->n_waiting / 4 || !lanes_any(p.goes_on & lanes_less(m->nearest, lanes_of(bound)))))
+        (m->n - n_sorted < m->n_waiting / 2 || !lanes_any(p.goes_on & lanes_less(m->nearest, lanes_of(bound)))))
       continue; /* else what waits would be sorted with every batch */
     sort_meetings(m, n_sorted);
     composite_before(s, m, bound, &p, wants);

@@ -43,6 +43,10 @@ static conic_status plan_records(conic_raster_frame *f) {
   projected->rays = conic_keep_room(context, &renderer->rays, n, sizeof *projected->rays);
   if (!projected->chunks || !projected->footprints || !projected->surfaces || !projected->rays)
     return CONIC_ERROR_MEMORY;
+  if (n == 0 || !projected->band) { /* lanes read what sums name, even where triangles hide it */
+    memset(projected->footprints, 0, sizeof *projected->footprints);
+    memset(projected->surfaces, 0, sizeof *projected->surfaces);
+  }
   projected->clips = NULL;
   if (f->splats->n_clips && n) /* only the marked footprints' records are ever touched */
     projected->clips = conic_keep_room(context, &renderer->clips, n, sizeof *projected->clips);
