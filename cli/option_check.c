@@ -39,7 +39,7 @@ static const struct {
     [CLI_FACT_CAMERAS] =
         {"cameras", "a file of cameras, by --camera FILE, or a side as front, back, left, right, top, bottom or iso"},
     [CLI_FACT_UPRIGHT] = {"upright", "lights, heights or a framed camera that stand upright"},
-    [CLI_FACT_TURNTABLE] = {"turntable", "--turntable N"},
+    [CLI_FACT_TURNTABLE] = {"turntable", "--turntable N, --path FILE"},
     [CLI_FACT_EVERY_VIEW] = {"views", "--view all"},
     [CLI_FACT_MAP] = {"map", "--camera top"},
     [CLI_FACT_STEREO] = {"stereo", "two eyes, by --stereo E"},

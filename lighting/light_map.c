@@ -8,6 +8,9 @@
  * sun's own disc, and floats still tell depths apart by a fiftieth of a texel. */
 static const double far_away = 256.0;
 
+/* What is farther towards the light, in the same units, casts no shadow: floats would tell no depths apart. */
+static const double farthest = 1e6;
+
 /* How far a box reaches along a direction from its middle. */
 static double reach_along(const double half[3], const double direction[3]) {
   return (half[0] * fabs(direction[0]) + half[1] * fabs(direction[1])) + half[2] * fabs(direction[2]);
@@ -34,6 +37,7 @@ void conic_light_map_place(const conic_casters *casters, const conic_receivers *
   double reach = casters_reach(casters, receivers->origin, direction);
   reach = reach > half ? reach : half;
   half = half > 0.0 ? half : texel;
+  reach = reach < farthest * half ? reach : farthest * half;
   double distance = far_away * half > 2.0 * reach ? far_away * half : 2.0 * reach;
   double nearer = distance / (distance - half); /* what is nearer to the light is larger in its map */
   double x = reach_along(receivers->half, rows[0]) * nearer, y = reach_along(receivers->half, rows[1]) * nearer;

@@ -4,6 +4,7 @@
 #include "cli/commands/gaussian_commands.h"
 #include "cli/outputs.h"
 #include "core/files/disk.h"
+#include "core/image/view_arguments.h"
 
 typedef struct project_job {
   cli_render_job scene;
@@ -14,10 +15,10 @@ typedef struct project_job {
 } project_job;
 
 static size_t count_shown(const conic_gaussian_intermediates *found) {
-  const conic_intermediate_array *radii = &found->arrays[CONIC_INTERMEDIATE_RADII];
+  const double *depths = found->arrays[CONIC_INTERMEDIATE_DEPTHS].value; /* 0: left out */
   size_t n = 0;
-  for (size_t i = 0; i < found->count && radii->n_columns; i++)
-    n += radii->value[2 * i] > 0.0;
+  for (size_t i = 0; i < found->count; i++)
+    n += depths[i] != 0.0;
   return n;
 }
 
@@ -36,6 +37,8 @@ static conic_status project_scene(cli_session *session, project_job *job) {
   conic_float_model model;
   conic_status status = cli_gaussians_begin(session, &job->scene, job->floats, &options, &model);
   const double start = cli_seconds();
+  if (status == CONIC_OK)
+    status = conic_view_pinhole_check(session->context, "project", &job->scene.shot.camera);
   if (status == CONIC_OK)
     status = conic_gaussian_intermediates_find(session->context, conic_source_gaussians(job->scene.source),
                                                &job->scene.shot.camera, &options, &model, &job->found);

@@ -94,19 +94,27 @@ static int check_each_value(const cli_session *session, const cli_scene_words *w
 }
 
 /* Which input a text of so many letters names: by its name, or by the last part of it where no other input has the
- * same; -1: none. */
+ * same; -1: none; -2: several. */
 static int find_input(const cli_render_job *job, const char *text, size_t length) {
   int found = -1, n_found = 0;
   for (int i = 0; i < job->n_inputs; i++) {
     const char *name = job->inputs[i], *slash = strrchr(name, '/');
-    if (strlen(name) == length && strncmp(name, text, length) == 0)
+    if (strlen(name) == length && strncmp(name, text, length) == 0) {
+      for (int k = i + 1; k < job->n_inputs; k++)
+        if (strcmp(job->inputs[k], name) == 0)
+          return -2;
       return i;
+    }
     if (slash && strlen(slash + 1) == length && strncmp(slash + 1, text, length) == 0) {
       found = i;
       n_found++;
     }
   }
-  return n_found == 1 ? found : -1;
+  return n_found > 1 ? -2 : found;
+}
+
+static const char *not_one(int found) {
+  return found == -2 ? "several inputs have this name" : "it is none of the inputs";
 }
 
 /* The text of conic_source_options.place. */
@@ -116,7 +124,7 @@ static int settle_places(const cli_session *session, cli_render_job *job) {
     const char *text = job->places[k], *equals = strrchr(text, '=');
     const int i = find_input(job, text, (size_t)(equals - text));
     if (i < 0)
-      return cli_usage("%s: --place %.*s: it is none of the inputs", session->command, (int)(equals - text), text);
+      return cli_usage("%s: --place %.*s: %s", session->command, (int)(equals - text), text, not_one(i));
     used += (size_t)snprintf(job->place + used, CLI_PLACE_ROOM - used, "%s%d:%s", k ? ";" : "", i, equals + 1);
     if (used >= CLI_PLACE_ROOM)
       return cli_usage("%s: --place has too many digits", session->command);
@@ -130,7 +138,9 @@ static int settle_roles(const cli_session *session, const cli_render_job *job, c
                         const char *const *names, int n, uint64_t *inputs) {
   for (int k = 0; k < n; k++) {
     const int i = find_input(job, names[k], strlen(names[k]));
-    if (i < 0 || i >= 53)
+    if (i < 0)
+      return cli_usage("%s: --%s %s: %s", session->command, option, names[k], not_one(i));
+    if (i >= 53)
       return cli_usage("%s: --%s %s: it is none of the first 53 inputs", session->command, option, names[k]);
     *inputs |= 1ull << i;
   }

@@ -4,6 +4,7 @@
 #include "core/base/vectors.h"
 #include "core/files/file.h"
 #include "core/files/json_read.h"
+#include "core/image/view_arguments.h"
 
 enum { MOST_KEYS = 1 << 20 };
 static const double most_seconds = 1e6, largest_place = 1e29;
@@ -245,8 +246,14 @@ conic_status conic_camera_path_list(conic_context *context, const conic_camera_p
     cameras->names[cameras->count] = conic_memory_allocate_zeroed(context, 1, 1);
     status = cameras->names[cameras->count] ? CONIC_OK : CONIC_ERROR_MEMORY;
   }
-  for (size_t i = 0; i < cameras->count; i++)
-    place_camera(path, first + (double)i / fps, &cameras->cameras[i]);
+  for (size_t i = 0; i < cameras->count && status == CONIC_OK; i++) {
+    const double time = first + (double)i / fps;
+    char wrong[CONIC_CAMERA_FAULT_ROOM];
+    place_camera(path, time, &cameras->cameras[i]);
+    if (conic_camera_is_wrong(&cameras->cameras[i], wrong))
+      status =
+          conic_fail(context, CONIC_ERROR_INPUT, "the path at %g s, which may be at its own target: %s", time, wrong);
+  }
   return status;
 }
 

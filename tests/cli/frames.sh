@@ -107,6 +107,8 @@ turn 2 --path keys.json --camera camera.json -o out.d/p.pfm
 turn 4 --path keys.json -o absent.d/p.pfm
 printf '{"keys": [{"time": 0}]}' > short.json
 turn 3 --path short.json -o out.d/p.pfm
+printf '{"keys": [{"time": 0, "place": [0, 0, 6], "target": [0, 0, 0]}, {"time": 2, "place": [0, 0, -6]}]}' > through.json
+turn 3 --path through.json --fps 2 -o out.d/p.pfm
 
 # Films: what ffmpeg is told and given, by one that keeps both; one that ends early; and where there is none.
 mkdir bin none

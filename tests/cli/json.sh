@@ -228,6 +228,10 @@ write judge-gradients judge_gradients judge two.splat --profile gsplat-1.6 --siz
   --gradients two-g.ply
 write judge-gradients-wrong judge_gradients judge two.splat --profile gsplat-1.6 --size 40x40 --weights two.exr --raw \
   --gradients two-g.ply
+write project-exact project project two.splat --profile exact --size 40x40
+[[ $(value shown project-exact.json) == 2 ]] || fail "project --profile exact: not 2 shown"
+run 2 project two.splat --profile exact --projection fisheye --size 40x40 -o two.npz
+grep -q '^conic: error: project: the camera is fisheye' err || fail "project names another command: $(head -c 200 err)"
 write project project project two.splat --profile gsplat-1.6 --size 40x40 -o two.npz
 write judge-intermediates judge_intermediates judge two.splat --profile gsplat-1.6 --size 40x40 --intermediates two.npz
 write judge-intermediates-wrong judge_intermediates judge two.splat --profile gsplat-1.6 --size 40x70 \

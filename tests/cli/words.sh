@@ -134,6 +134,9 @@ done << 'END'
 2|--camera FILE looks anywhere|render s.ply -o a.png --look-at 0,0,0
 2|--azimuth DEG goes around|render s.ply -o a.png --rotate 90
 0|render: --orbit means --turntable|render s.ply -o turn.png -s 16x16 --orbit 2
+2|it needs --turntable N, --path FILE, or --view all|render s.ply -o a.png --frames 1
+2|--place s.ply: several inputs have this name|render s.ply s.ply -o a.png --place s.ply=1,0,0
+2|--catcher s.ply: several inputs have this name|render s.ply s.ply -o a.png --shadow --catcher s.ply
 2|--path, or -o OUT.mp4|render s.ply -o a.png --turntable 2 --framerate 25
 2|conic cut IN -o OUT --box|render s.ply -o a.png --section 1,0,0
 2|conic cut IN -o OUT --box|render s.ply -o a.png --clip 1,0,0
