@@ -8,11 +8,11 @@ enum { RUN = ORACLE_GRADIENT_RUN };
 static const double n_setup_units = ORACLE_SETUP_UNITS, n_chain_units = 16.0;
 /* A sum of n terms in whatever order is off by √n units of the terms' sizes, 8 times at most: roundings are as good as
  * independent. */
-static const double n_sum_deviations = 8.0;
+static const double n_sum_deviations = 5.0;
 /* Where the compensation's square is off by more, a difference of nearly equal numbers leaves nothing of it. */
 static const double most_compensation = 0.1;
 /* Of the deviation of samples, which are few. */
-static const double n_sample_deviations = 12.0;
+static const double n_sample_deviations = 8.0;
 /* Two decisions at once may change more than each by itself, by as much as a Gaussian at its least hides. */
 static const double crossed = 1.1;
 

@@ -16,6 +16,7 @@ import torch
 import torch_pictures as pictures
 
 BOUND = 1e-9  # of the largest number of a kind, and of each number
+LEAST_SHARE = 1 / 20  # of what the judge allows floats, that floats of some scene use: else it allows too much
 LEAST = 1.0 / 255.0
 
 
@@ -145,7 +146,8 @@ def compare(name, conic, gsplat, scene, path, camera):
 
 
 def judge_floats(conic, gsplat, scene, path, camera, kind, profile, weights):
-    """The same in floats, as conic judge --gradients has it; 1 where that calls it wrong, or a mistake in it right."""
+    """The same in floats, as conic judge --gradients has it; how often that calls it wrong, or a mistake in it right,
+    or allows a kind far more than floats need."""
     made = differentiate(gsplat, scene, camera, kind, weights, torch.float32)[1]
     made = {name: made[key] for name, key in (("means", "mean"), ("scales", "scale"), ("quats", "rotation"),
                                               ("opacities", "opacity"), ("sh", "sh"))}
@@ -153,6 +155,9 @@ def judge_floats(conic, gsplat, scene, path, camera, kind, profile, weights):
     words = [conic, "judge", path, "--profile", profile, "--camera", "camera.json", "--weights", "weights.npy"]
     right = subprocess.run([*words, "--gradients", "floats.npz", "--json", "judged.json"], capture_output=True, text=True)
     print(right.stdout + right.stderr, end="")
+    with open("judged.json") as file:
+        shares = {name: about["share_of_bound"] for name, about in json.load(file)["kinds"].items()}
+    print("  shares " + ", ".join(f"{name} {share:.3f}" for name, share in shares.items()))
     for key in made:
         i = np.unravel_index(abs(made[key]).argmax(), made[key].shape)
         made[key][i] *= 1.01

@@ -9,7 +9,7 @@ if ! python3 -c 'import numpy' 2> /dev/null; then
 fi
 python3 "$1/tests/judge/planted_faults.py" "$1" "$2" 1 alpha-squared-weight no-half sh-direction exp2 cross-half \
   negative-colours black-tile-16 last-row-of-tiles lower-half every-third every-fifth-column \
-  nan checkers bgr shift-1px alpha-1 right || exit 1
+  scale-swapped jacobian-sign half-depth-key focal-1.02 nan checkers bgr shift-1px alpha-1 right || exit 1
 # And of faults that small pictures do not show each makes a case of the suite wrong.
 python3 "$1/tests/judge/planted_faults.py" "$1" "$2" suite clamped,cover,tied over-16-tiles-dropped \
   tiles-from-100-dropped clamped-about-middle batches-dropped last-row-of-tiles right
