@@ -229,6 +229,8 @@ static void describe_scene(cli_json *json, const conformance_job *job, int i_sce
   if (scene->step)
     cli_json_count(json, "step", (uint64_t)scene->step);
   cli_json_text(json, "stage", conic_gaussian_stage_name(scene->stage));
+  if (scene->make_splats || (scene->asset && scene->asset->flags & KHR_LINEAR))
+    cli_json_text(json, "colors", "linear");
   cli_json_object(json, "camera");
   describe_path(json, "conic", "cameras", scene->name, ".json");
   describe_path(json, "colmap", "cameras", scene->name, "");

@@ -105,7 +105,7 @@ const khr_asset cli_khr_assets[] = {
     {"color-bright", "a colour above 1 that alpha brings below 1: it is not limited before", "Splat Composition", 1,
      SPLATS(bright)},
     {"color-linear", "linear colours: they are blended as they are", "Available Color Spaces", 1, SPLATS(three),
-     .edits = {{"srgb_rec709_display", "lin_rec709_display"}}},
+     .flags = KHR_LINEAR},
 
     {"rotation-byte", "signed bytes, normalised", "Attributes", 2, SPLATS(three_of_bytes), STORED(ROTATION, INT8, 1)},
     {"rotation-short", "signed shorts, normalised", "Attributes", 2, SPLATS(three), STORED(ROTATION, INT16, 1)},

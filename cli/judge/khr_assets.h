@@ -39,7 +39,8 @@ enum {
   KHR_PRIMITIVES = 32, /* splats go to two primitives of a mesh by turns */
   KHR_MESHES = 64,     /* or to two meshes */
   KHR_CUT = 128,       /* the file ends too early */
-  KHR_BY_CONIC = 256   /* written by conic's own writer */
+  KHR_BY_CONIC = 256,  /* written by conic's own writer */
+  KHR_LINEAR = 512     /* of the other colour space */
 };
 
 typedef struct khr_asset {

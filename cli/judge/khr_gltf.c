@@ -235,8 +235,8 @@ static void add_primitive(khr_writer *w, int part) {
   }
   add(&w->meshes,
       "},%s\"extensions\":{\"KHR_gaussian_splatting\":{\"kernel\":\"ellipse\",\"colorSpace\":"
-      "\"srgb_rec709_display\"}}}",
-      asset->flags & KHR_FALLBACK ? "\"material\":0," : "");
+      "\"%s_rec709_display\"}}}",
+      asset->flags & KHR_FALLBACK ? "\"material\":0," : "", asset->flags & KHR_LINEAR ? "lin" : "srgb");
 }
 
 /* A triangle behind every camera. */

@@ -133,7 +133,9 @@ conic_status cli_suite_judge_case(conic_context *context, const suite_judging *j
     snprintf(verdict->message, sizeof verdict->message, "there is no picture of it");
   else if (status == CONIC_OK) {
     verdict->outcome = SUITE_IS_WRONG;
-    status = conic_picture_read(context, path, suite_plane_bits, &judging->reading, &picture);
+    conic_picture_options reading = judging->reading;
+    reading.is_srgb = strcmp(entry->colors, "linear") == 0;
+    status = conic_picture_read(context, path, suite_plane_bits, &reading, &picture);
     if (status == CONIC_ERROR_INPUT || status == CONIC_ERROR_UNSUPPORTED) {
       snprintf(verdict->message, sizeof verdict->message, "its picture cannot be read");
       status = CONIC_OK;

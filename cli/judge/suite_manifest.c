@@ -5,7 +5,7 @@ enum { SUITE_MOST_LEVELS = 99, SUITE_MOST_ENTRIES = 4096 };
 /* A scene or a file of the manifest. */
 typedef struct manifest_scene {
   char name[SUITE_WORD_ROOM], ply[2 * SUITE_NAME_ROOM], camera[2 * SUITE_NAME_ROOM];
-  char stage[SUITE_WORD_ROOM];
+  char stage[SUITE_WORD_ROOM], colors[SUITE_WORD_ROOM];
   int width, height, step;
 } manifest_scene;
 
@@ -116,8 +116,9 @@ static void read_scene_entry(conic_json *json, manifest_scene *scene) {
       {"width", NUMBER, AT(manifest_scene, width), 65535.0},
       {"height", NUMBER, AT(manifest_scene, height), 65535.0},
       {"stage", WORD, AT(manifest_scene, stage)},
+      {"colors", WORD, AT(manifest_scene, colors)},
       {"step", NUMBER, AT(manifest_scene, step), 65535.0}};
-  read_object(json, members, 7, scene);
+  read_object(json, members, 8, scene);
   if (!scene->name[0] || !scene->ply[0] || !scene->camera[0] || !scene->width || !scene->height ||
       scene->step / 2 >= scene->width || scene->step / 2 >= scene->height)
     conic_json_wrong(json, "a scene lacks its name, its files.ply or files.gltf, its camera.conic, its width or its "
@@ -210,6 +211,7 @@ static int has_scene(manifest_reader *r, suite_entry *one) {
     one->height = scene->height;
     one->step = scene->step;
     memcpy(one->stage, scene->stage, sizeof one->stage);
+    memcpy(one->colors, scene->colors, sizeof one->colors);
     return 1;
   }
   return 0;

@@ -11,7 +11,8 @@ enum { SUITE_NAME_ROOM = 96, SUITE_WORD_ROOM = 64 };
 typedef struct suite_entry {
   char name[SUITE_NAME_ROOM], scene[SUITE_WORD_ROOM], profile[SUITE_WORD_ROOM], npy[2 * SUITE_NAME_ROOM];
   char ply[2 * SUITE_NAME_ROOM], camera[2 * SUITE_NAME_ROOM]; /* of the scene; and of its camera in conic's own JSON */
-  char stage[SUITE_WORD_ROOM]; /* of a renderer, that the scene tests most; empty: not told */
+  char colors[SUITE_WORD_ROOM]; /* "linear": codes are encoded by sRGB's curve; empty: colours are display values */
+  char stage[SUITE_WORD_ROOM];  /* of a renderer, that the scene tests most; empty: not told */
   int level, width, height;
   int step;                       /* every so many pixels are judged; 0: all */
   uint64_t bytes;                 /* of the .npy */

@@ -35,7 +35,7 @@ def places(value):
         yield value
     for item in value.values() if isinstance(value, dict) else value[:1] if isinstance(value, list) else ():
         yield from places(item)
-optional = {"spz", "glb", "exr", "step"}
+optional = {"spz", "glb", "exr", "step", "colors"}
 for i, place in enumerate(places(manifest)):
     for key in place:
         if key in optional:

@@ -23,6 +23,14 @@ for file in pack/broken/*.{gltf,glb}; do
   [[ $(wc -l < err) -eq 1 && ! -e never.png ]] || fail "$file: $(cat err)"
 done
 
+# Codes are encoded where colours are linear.
+for name in color-linear degree-1; do
+  run 0 render pack/scenes/$name.gltf --camera pack/cameras/$name.json --profile khr-2026 --aov rgba \
+    -o own/L1-$name-khr-2026.png
+  rm own/L1-$name-khr-2026.pfm
+done
+run 0 judge --suite pack --pictures own --level 1
+
 # The camera of a file is that of cameras/.
 run 0 render pack/scenes/camera-turned.gltf --camera pack/scenes/camera-turned.gltf --profile khr-2026 --aov rgba \
   --size 40x30 -o p.pfm
