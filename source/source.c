@@ -7,8 +7,9 @@
 
 /* Every kind, in the order in which they are asked; the last takes all remaining inputs. */
 static const conic_source_kind *const kinds[] = {
-    &conic_source_kind_gaussians, &conic_source_kind_scenes,  &conic_source_kind_together, &conic_source_kind_layers,
-    &conic_source_kind_hybrid,    &conic_source_kind_patches, &conic_source_kind_octree,   &conic_source_kind_drawing};
+    &conic_source_kind_levels,   &conic_source_kind_gaussians, &conic_source_kind_scenes,
+    &conic_source_kind_together, &conic_source_kind_layers,    &conic_source_kind_hybrid,
+    &conic_source_kind_patches,  &conic_source_kind_octree,    &conic_source_kind_drawing};
 enum { N_KINDS = sizeof kinds / sizeof kinds[0] };
 
 CONIC_DEFINE_OPTIONS(conic_source_options, .cutoff = 1.5f, .n_neighbours = 20)

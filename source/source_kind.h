@@ -110,7 +110,7 @@ struct conic_source {
 
 extern const conic_source_kind conic_source_kind_drawing, conic_source_kind_octree, conic_source_kind_layers,
     conic_source_kind_hybrid, conic_source_kind_patches, conic_source_kind_gaussians, conic_source_kind_scenes,
-    conic_source_kind_together, conic_source_kind_shared;
+    conic_source_kind_together, conic_source_kind_shared, conic_source_kind_levels;
 
 /* The mean of the normals by area, of points over land turned up; 0 where they say nothing, as of Gaussians. Looks at
  * the source once. Collective where it is shared. Errors: as conic_source_stand. */

@@ -4,8 +4,7 @@
 #include "cli/points/points_input.h"
 #include "lod/layers/build/layers_team.h"
 
-static const char *const payload_words[] = {"plain", "full", NULL};
-enum { PLAIN, FULL };
+static const char *const payload_words[] = {"plain", "full", "gaussians", NULL};
 
 static void report_finished_samples(cli_json *json, const cli_layer_job *job) {
   if (job->is_resumable || job->resume_path)
@@ -16,6 +15,10 @@ static void report_layers(cli_json *json, const void *cookie) {
   const cli_layer_job *job = cookie;
   const conic_layers_statistics *s = &job->statistics;
   const conic_repairs repairs = {.nan = (size_t)s->n_nan, .zero = (size_t)s->n_zero};
+  if (job->payload == CLI_LAYER_GAUSSIANS) {
+    cli_layer_report_gaussians(json, job);
+    return;
+  }
   cli_json_counts(json, NULL, {"points_in", s->n_in}, {"points_out", s->n_samples});
   report_finished_samples(json, job);
   cli_json_counts(json, NULL, {"clouds", s->n_clouds}, {"levels", (uint64_t)s->n_levels}, {"bytes", s->n_bytes});
@@ -30,6 +33,10 @@ static void report_layers(cli_json *json, const void *cookie) {
 static void tell_layers(const void *cookie) {
   const cli_layer_job *job = cookie;
   const conic_layers_statistics *s = &job->statistics;
+  if (job->payload == CLI_LAYER_GAUSSIANS) {
+    cli_layer_tell_gaussians(job);
+    return;
+  }
   if (job->n_finished)
     cli_note(job->base.session, "%llu of %llu samples were in finished branches", (unsigned long long)job->n_finished,
              (unsigned long long)s->n_samples);
@@ -123,6 +130,9 @@ static conic_status plan_layers(cli_layer_job *job, conic_read_options *options)
 static int make_layers(void *cookie) {
   cli_layer_job *job = cookie;
   cli_session *session = job->base.session;
+  int answer = cli_layer_choose_payload(job);
+  if (answer != CLI_DONE || job->payload == CLI_LAYER_GAUSSIANS)
+    return answer == CLI_DONE ? cli_layer_make_gaussians(job) : answer;
   conic_read_options options;
   conic_status status = plan_layers(job, &options);
   char key[CONIC_SHA256_ROOM];
@@ -168,12 +178,12 @@ static int check_layer_arguments(cli_layer_job *job) {
     return cli_usage("layer: no output given (-o OUT.lpc)");
   if (!(job->quantum.value > 0.0))
     return cli_usage("layer: --quantum must be above 0");
-  if (job->is_appending && (job->is_quantum_given || job->payload == FULL || job->keep))
+  if (job->is_appending && (job->is_quantum_given || job->payload == CLI_LAYER_FULL || job->keep))
     return cli_usage("layer: --append adds to a file as it was built: not with --quantum, --payload or --keep");
   if (job->is_appending)
     job->base.session->replaced_path = job->base.output;
-  job->options.keeps_all = job->payload == FULL;
-  if (job->payload == FULL && !job->is_quantum_given)
+  job->options.keeps_all = job->payload == CLI_LAYER_FULL;
+  if (job->payload == CLI_LAYER_FULL && !job->is_quantum_given)
     job->quantum = (cli_length){1.0 / 4096.0, 1};
   job->options.cloud_size = (uint32_t)job->cloud_size;
   job->options.memory_bytes = (uint64_t)(job->memory_mib * 1048576.0);
@@ -194,6 +204,7 @@ static int run_layer(cli_session *session, int argc, char **argv) {
                        .cloud_size = 2048,
                        .memory_mib = 1024.0,
                        .cutoff = 1.5,
+                       .payload = CLI_LAYER_BY_INPUT,
                        .quantum = {0.5, 1}};
   const char *positional[argc];
   conic_estimate_options_init(&job.estimate);
@@ -216,8 +227,9 @@ static int run_layer(cli_session *session, int argc, char **argv) {
        "neighbours that raw points' normals are estimated from, 6 to 64 [20]", 6, 64,
        .acts = {.on = CLI_FACT(RAW), .is_warned = 1}},
       {"payload", CLI_CHOICE, &job.payload, "WHAT",
-       "what of a splat is kept: plain, its place, size, direction and colour, and that it is a dot; or full, also "
-       "ellipses, opacities and clip lines, and all of it finely [plain]",
+       "what of a splat is kept: plain, its place, size, direction and colour, and that it is a dot; full, also "
+       "ellipses, opacities and clip lines, and all of it finely; gaussians, of Gaussian scenes all, in levels of "
+       "merged ones [gaussians of such scenes, else plain]",
        .choices = payload_words},
       {"keep", CLI_TEXT, &job.keep, "NAMES",
        "which values of the points are kept, for --color-by and --where: intensity,gps_time or all [none]",
@@ -239,7 +251,7 @@ static int run_layer(cli_session *session, int argc, char **argv) {
 const cli_command cli_layer = {
     .name = "layer",
     .summary = "builds a layered point cloud: samples of any number, for pictures in bounded memory",
-    .usage = "conic layer IN… -o OUT.lpc [--cloud-size M] [--memory MIB] [--quantum Q] [--payload full] [--keep NAMES] "
+    .usage = "conic layer IN… -o OUT.lpc [--cloud-size M] [--memory MIB] [--quantum Q] [--payload WHAT] [--keep NAMES] "
              "[--append]",
     .run = run_layer,
     .description =

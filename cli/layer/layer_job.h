@@ -2,6 +2,10 @@
 #pragma once
 
 #include "cli/commands/build_coloring.h"
+#include "lod/blends/levels_build.h"
+
+/* What of the inputs is kept; by what they are: Gaussian scenes as such. */
+enum { CLI_LAYER_PLAIN, CLI_LAYER_FULL, CLI_LAYER_GAUSSIANS, CLI_LAYER_BY_INPUT };
 
 typedef struct cli_layer_job {
   cli_build base; /* its input is the current one … */
@@ -30,7 +34,17 @@ typedef struct cli_layer_job {
   uint64_t n_points, n_pieces, n_finished; /* n_finished: samples that were finished before this run */
   double busy_seconds;
   cli_team_report team;
+
+  conic_levels_builder *gaussian_builder; /* of Gaussian scenes */
+  conic_levels_statistics levels;
 } cli_layer_job;
+
+/* Settles the payload where it is not given. Returns CLI_DONE, or CLI_USAGE after a message. */
+int cli_layer_choose_payload(cli_layer_job *job);
+/* Makes, reports and tells of a file of Gaussian scenes; the first returns the exit code. */
+int cli_layer_make_gaussians(cli_layer_job *job);
+void cli_layer_report_gaussians(cli_json *json, const cli_layer_job *job);
+void cli_layer_tell_gaussians(const cli_layer_job *job);
 
 /* Prepares continuing .lpc files: the grid is the first one's, and all files keep the same values of points. Errors: as
  * conic_layers_open, INPUT (they keep different values). */

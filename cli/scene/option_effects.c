@@ -98,7 +98,8 @@ static void guess_source(const cli_session *session, cli_render_job *job) {
   int is_hybrid = (can & CONIC_SOURCE_CLUSTERS) != 0, is_mesh = job->opening.as == CONIC_AS_HYBRID;
   own->certain = when(can & CONIC_SOURCE_COMPOSITES, F(COMPOSITED)) | when(can & CONIC_SOURCE_MIXES, F(MIXED)) |
                  when(is_hybrid, F(HYBRID)) | when(can & CONIC_SOURCE_STREAMS, F(LEVELS)) |
-                 when(can == CONIC_SOURCE_CHOOSES, F(NODES)) | when(!(can & CONIC_SOURCE_COMPOSITES), F(CHOOSES)) |
+                 when(can == CONIC_SOURCE_CHOOSES, F(NODES)) |
+                 when(!(can & CONIC_SOURCE_COMPOSITES) || can & CONIC_SOURCE_CHOOSES, F(CHOOSES)) |
                  when(is_gaussian(session, job), F(GAUSSIANS));
   if (own->certain & F(COMPOSITED))
     own->certain |= when(job->shot.gaussians.profile == CONIC_PROFILE_EXACT, F(EXACT));
@@ -146,11 +147,12 @@ static void know_source(cli_render_job *job) {
     own->possible &= ~when(job->source->no_traits >> i & 1, traits[i]);
   if (job->is_transparent && own->possible & F(NODES) && !has_faint_points(job))
     own->possible &= ~F(ALPHA);
-  own->possible &= own->certain |
-                   ~(when(!(can & CONIC_SOURCE_COMPOSITES), F(COMPOSITED)) |
-                     when(!(can & CONIC_SOURCE_COMPOSITES) && job->opening.gaussians, F(GAUSSIANS)) |
-                     when(!(can & CONIC_SOURCE_CLUSTERS), F(HYBRID)) | when(!(can & CONIC_SOURCE_STREAMS), F(LEVELS)) |
-                     when(can != CONIC_SOURCE_CHOOSES, F(NODES)) | when(can & CONIC_SOURCE_COMPOSITES, F(CHOOSES)));
+  own->possible &=
+      own->certain | ~(when(!(can & CONIC_SOURCE_COMPOSITES), F(COMPOSITED)) |
+                       when(!(can & CONIC_SOURCE_COMPOSITES) && job->opening.gaussians, F(GAUSSIANS)) |
+                       when(!(can & CONIC_SOURCE_CLUSTERS), F(HYBRID)) |
+                       when(!(can & CONIC_SOURCE_STREAMS), F(LEVELS)) | when(can != CONIC_SOURCE_CHOOSES, F(NODES)) |
+                       when(can & CONIC_SOURCE_COMPOSITES && !(can & CONIC_SOURCE_CHOOSES), F(CHOOSES)));
   if (job->top.is_wanted && !job->is_shade_given && scale->has_colors) /* it is then drawn as it is */
     own->asked &= ~(F(LIT) | F(SHAPED));
   int is_chosen = job->shot.view.only_kind >= 0 || own->asked & CLI_CHOSEN; /* of a hybrid, which may be either kind */

@@ -19,6 +19,11 @@ static int find_frame_axes(const char *frame, double axes[3][3]) {
   return frame[3] == 0;
 }
 
+int conic_frame_is_one(const char *frame) {
+  double axes[3][3];
+  return find_frame_axes(frame, axes);
+}
+
 /* The rotation from one frame to another; 0 where there is none. */
 static int find_rotation(const char *from, const char *to, double rotation[3][3]) {
   double a[3][3], b[3][3], *r = rotation[0];

@@ -59,6 +59,9 @@ void conic_gaussians_find_quaternion(const double rotation[3][3], double quatern
 /* Turns a scene about the origin by a rotation, harmonics too. */
 void conic_gaussians_rotate(conic_context *context, conic_gaussians *gaussians, const double rotation[3][3]);
 
+/* Whether a frame's letters say where x, y and z point. */
+int conic_frame_is_one(const char *frame);
+
 /* Scales a scene evenly about the origin, and shifts it then. */
 void conic_gaussians_shift(conic_gaussians *gaussians, double scale, const double shift[3]);
 

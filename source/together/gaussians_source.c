@@ -7,6 +7,7 @@
 #include "gaussians/draw/gaussian_parts.h"
 #include "gaussians/draw/surfaces_join.h"
 #include "gaussians/scene/gaussian_set.h"
+#include "lod/blends/levels_read.h"
 #include "raster/frame/samples.h"
 #include "raster/frame/statistics.h"
 #include "source/surfaces_among.h"
@@ -23,7 +24,7 @@ int conic_gaussians_source_takes(const char *path, const conic_source_options *o
   quiet.threads = 1;
   if (!options->gaussians || conic_context_create(&quiet, &context) != CONIC_OK)
     return 0;
-  int is_one = conic_gaussians_is_file(context, path);
+  int is_one = conic_gaussians_is_file(context, path) || conic_levels_is_file(path);
   conic_context_destroy(context);
   return is_one;
 }

@@ -5,6 +5,7 @@
 #include "core/base/loan_find.h"
 #include "core/splats/near.h"
 #include "gaussians/scene/gaussian_set.h"
+#include "lod/blends/levels_read.h"
 #include "source/input_places.h"
 #include "source/moved_drawing.h"
 #include "source/together/gaussians_source.h"
@@ -55,7 +56,8 @@ static conic_status read_scene(conic_context *context, const char *path, conic_g
   const conic_gaussians *lent = conic_loan_find(context, path, "gaussians");
   *is_lent = lent != NULL;
   if (!lent)
-    return conic_gaussians_read(context, path, NULL, gaussians);
+    return conic_levels_is_file(path) ? conic_levels_read(context, path, gaussians)
+                                      : conic_gaussians_read(context, path, NULL, gaussians);
   conic_status status = conic_gaussians_check(context, lent, path);
   if (status == CONIC_OK)
     *gaussians = *lent;

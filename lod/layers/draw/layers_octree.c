@@ -406,7 +406,7 @@ conic_status conic_layers_octree_open(conic_layers *layers, const conic_hierarch
   conic_layers_octree *o = layers->octree = conic_memory_allocate_zeroed(layers->context, 1, sizeof *o);
   if (!o)
     return CONIC_ERROR_MEMORY;
-  conic_layers_ranges_options(layers, &options);
+  conic_layers_access_ranges(&layers->access, layers->until_s, &options);
   conic_ranges *ranges = layers->ranges;
   layers->ranges = NULL;
   conic_status status = conic_hierarchy_open(layers->context, kind, layers->name, ranges, &options, &o->hierarchy);

@@ -47,20 +47,20 @@ static conic_status read_head(conic_layers *layers, unsigned char *to, size_t n_
   return status;
 }
 
-void conic_layers_ranges_options(const conic_layers *layers, conic_ranges_options *options) {
+void conic_layers_access_ranges(const conic_layers_access *access, double until_s, conic_ranges_options *options) {
   conic_ranges_options_init(options);
-  options->connect_seconds = layers->access.connect_seconds;
-  options->stall_seconds = layers->access.stall_seconds;
-  options->n_retries = layers->access.n_retries;
-  options->pause_seconds = layers->access.pause_seconds;
-  options->n_connections = layers->access.n_connections;
-  options->most_whole_bytes = layers->access.memory_bytes / 2;
-  options->until_s = layers->until_s;
+  options->connect_seconds = access->connect_seconds;
+  options->stall_seconds = access->stall_seconds;
+  options->n_retries = access->n_retries;
+  options->pause_seconds = access->pause_seconds;
+  options->n_connections = access->n_connections;
+  options->most_whole_bytes = access->memory_bytes / 2;
+  options->until_s = until_s;
 }
 
 static conic_status open_ranges(conic_layers *layers) {
   conic_ranges_options options;
-  conic_layers_ranges_options(layers, &options);
+  conic_layers_access_ranges(&layers->access, layers->until_s, &options);
   return conic_ranges_open(layers->context, layers->name, &options, &layers->ranges);
 }
 

@@ -34,7 +34,7 @@ struct conic_layers {
 conic_status conic_layers_keep(conic_layers *layers, const char *names);
 
 /* How its files are read. */
-void conic_layers_ranges_options(const conic_layers *layers, conic_ranges_options *options);
+void conic_layers_access_ranges(const conic_layers_access *access, double until_s, conic_ranges_options *options);
 
 /* How many children an inner node has; they follow each other. */
 static inline uint32_t conic_layers_children(const conic_layers *layers) {

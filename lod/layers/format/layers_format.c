@@ -129,6 +129,12 @@ conic_status conic_layers_read_header(conic_context *context, const char *name, 
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: the file ends within the header (at byte %zu)", name, n_bytes);
   memset(header, 0, sizeof *header);
   conic_file_fields_read(header_fields, N_HEADER_FIELDS, bytes + sizeof magic, header);
+  if (header->version == CONIC_LAYERS_VERSION + 1)
+    return conic_fail(
+        context, CONIC_ERROR_INPUT,
+        "%s: a .lpc of Gaussians: conic render draws it by any --profile but surface, and conic info tells "
+        "of it (at byte 8)",
+        name);
   if (header->version == 0 || header->version > CONIC_LAYERS_VERSION)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: version %u of .lpc; this program reads 1 to %d (at byte 8)",
                       name, header->version, CONIC_LAYERS_VERSION);

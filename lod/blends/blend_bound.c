@@ -1,0 +1,162 @@
+/* How much a picture changes where a merged Gaussian is drawn in place of its parts: measured from some directions. */
+
+#include "core/base/vectors.h"
+#include "core/splats/kernel.h"
+#include "gaussians/scene/harmonics.h"
+#include "lod/blends/blend.h"
+
+/* Directions of sight, from all octants and along the axes; places a side of the square that is looked at, which is so
+ * many deviations wide; and what is added to what is found, as between directions and places there may be more. */
+enum { DIRECTIONS = 7, SIDE = 9 };
+static const double half_width = 3.3, safety = 1.25;
+
+/* A Gaussian on the screen: e^-(xx·x² + 2·xy·x·y + yy·y²)/2 about its mean. */
+typedef struct trace {
+  double x, y, depth;
+  float xx, xy, yy, opacity, color[3];
+} trace;
+
+typedef struct screen {
+  double right[3], down[3], sight[3], harmonics[(CONIC_MAX_SH_DEGREE + 1) * (CONIC_MAX_SH_DEGREE + 1)];
+  int degree;
+} screen;
+
+static screen screen_of(int i, int degree) {
+  static const double sights[DIRECTIONS][3] = {{1, 0, 0},  {0, -1, 0},  {0, 0, 1},  {1, 1, 1},
+                                               {-1, 1, 1}, {1, -1, -1}, {-1, -1, 1}};
+  screen s = {.degree = degree, .down = {0.0, 0.0, 0.0}};
+  memcpy(s.sight, sights[i], sizeof s.sight);
+  conic_normalize(s.sight);
+  s.down[i == 1 ? 2 : 1] = 1.0;
+  conic_cross(s.down, s.sight, s.right);
+  conic_normalize(s.right);
+  conic_cross(s.sight, s.right, s.down);
+  conic_harmonics_evaluate(s.sight, degree, s.harmonics);
+  return s;
+}
+
+static float greater(float a, float b) {
+  return a > b ? a : b;
+}
+
+static double quadratic(const double c[6], const double a[3], const double b[3]) {
+  return a[0] * (c[0] * b[0] + c[1] * b[1] + c[2] * b[2]) + a[1] * (c[1] * b[0] + c[3] * b[1] + c[4] * b[2]) +
+         a[2] * (c[2] * b[0] + c[4] * b[1] + c[5] * b[2]);
+}
+
+static trace trace_of(const screen *s, const conic_blend *b, const double from[3], double *root) {
+  trace t = {.opacity = b->is_drawn ? b->row[CONIC_BLEND_OPACITY] : 0.0f};
+  double d[3], xx = quadratic(b->covariance, s->right, s->right), xy = quadratic(b->covariance, s->right, s->down),
+               yy = quadratic(b->covariance, s->down, s->down), det;
+  conic_subtract(b->mean, from, d);
+  t.x = conic_dot(d, s->right);
+  t.y = conic_dot(d, s->down);
+  t.depth = conic_dot(d, s->sight);
+  /* what is flat seen from its edge has no area, and keeps a thousandth of its width */
+  const double thin = 1e-6 * (xx + yy) + 1e-30;
+  xx += thin;
+  yy += thin;
+  det = fmax(xx * yy - xy * xy, thin * thin);
+  *root = sqrt(det);
+  t.xx = (float)(yy / det);
+  t.xy = (float)(-xy / det);
+  t.yy = (float)(xx / det);
+  for (int c = 0; c < 3; c++) {
+    double sum = 0.5;
+    for (int k = 0; k < (s->degree + 1) * (s->degree + 1); k++)
+      sum += s->harmonics[k] * (double)b->row[CONIC_BLEND_HARMONICS + 3 * k + c];
+    t.color[c] = b->is_drawn ? (float)fmax(sum, 0.0) : 0.0f;
+  }
+  return t;
+}
+
+static float alpha_at(const trace *t, double at_x, double at_y) {
+  const float x = (float)(at_x - t->x), y = (float)(at_y - t->y);
+  const float q = t->xx * x * x + 2.0f * t->xy * x * y + t->yy * y * y;
+  const float alpha = q < 16.0f ? t->opacity * conic_exp_negative(-0.5f * q) : 0.0f;
+  return alpha < 0.99f ? alpha : 0.99f;
+}
+
+/* The greatest change of a colour or of the opacity at a place. The parts lie in the order of their depths. */
+static float change_at(const trace *whole, const trace *parts, size_t n, double x, double y) {
+  const float own = alpha_at(whole, x, y);
+  float left = 1.0f, sum[3] = {0.0f, 0.0f, 0.0f};
+  for (size_t i = 0; i < n; i++) {
+    const float alpha = alpha_at(&parts[i], x, y);
+    for (int c = 0; c < 3; c++)
+      sum[c] += left * alpha * parts[i].color[c];
+    left *= 1.0f - alpha;
+  }
+  float most = fabsf(1.0f - left - own);
+  for (int c = 0; c < 3; c++)
+    most = greater(most, fabsf(sum[c] - own * whole->color[c]));
+  return most;
+}
+
+static void order_by_depth(trace *parts, size_t n) {
+  for (size_t i = 1; i < n; i++)
+    for (size_t k = i; k > 0 && parts[k].depth < parts[k - 1].depth; k--) {
+      const trace kept = parts[k];
+      parts[k] = parts[k - 1];
+      parts[k - 1] = kept;
+    }
+}
+
+/* Looks from one direction, and raises what was found from others. */
+static void look_from(const screen *s, const conic_blend *parts, size_t n, conic_blend *whole) {
+  trace own, traces[CONIC_BLEND_MOST_PARTS];
+  double root, sum = 0.0;
+  float most = 0.0f;
+  own = trace_of(s, whole, whole->mean, &root);
+  for (size_t i = 0; i < n; i++) {
+    double unused;
+    traces[i] = trace_of(s, &parts[i], whole->mean, &unused);
+    for (int c = 0; c < 3; c++)
+      whole->ceiling = greater(whole->ceiling, traces[i].color[c]);
+  }
+  for (int c = 0; c < 3; c++)
+    whole->ceiling = greater(whole->ceiling, own.color[c] * own.opacity);
+  order_by_depth(traces, n);
+  /* a square of the ellipse's own axes: L of Σ = L·Lᵀ turns the unit square into them */
+  const double det = root * root, xx = (double)own.yy * det, xy = -(double)own.xy * det;
+  const double l_xx = sqrt(xx), l_yx = xy / l_xx, l_yy = root / l_xx, step = 2.0 * half_width / SIDE;
+  for (int row = 0; row < SIDE; row++)
+    for (int column = 0; column < SIDE; column++) {
+      const double u = (column + 0.5) * step - half_width, v = (row + 0.5) * step - half_width;
+      const float change = change_at(&own, traces, n, l_xx * u, l_yx * u + l_yy * v);
+      sum += (double)change;
+      most = greater(most, change);
+    }
+  for (size_t i = 0; i < n; i++)
+    most = greater(most, change_at(&own, traces, n, traces[i].x, traces[i].y));
+  whole->bound.most = greater(whole->bound.most, most);
+  whole->bound.light = greater(whole->bound.light, (float)(sum * step * step * root));
+}
+
+/* A float that is no less and has few bits. */
+static float rounded_up(double value) {
+  const uint32_t bits = conic_bits_of_float((float)value);
+  return value > 0.0 ? conic_float_of_bits((bits + 0x1fff) & ~(uint32_t)0xfff) : 0.0f;
+}
+
+void conic_blend_find_bound(const conic_blend *parts, size_t n, int sh_degree, conic_blend *whole) {
+  double light = 0.0, most = 0.0, reach = (double)whole->bound.reach;
+  whole->bound = (conic_blend_bound){0.0f, 0.0f, 0.0f};
+  whole->ceiling = 1.0f;
+  for (size_t i = 0; i < n; i++) {
+    double d[3];
+    conic_subtract(parts[i].mean, whole->mean, d);
+    light += (double)parts[i].bound.light;
+    most += (double)parts[i].bound.most;
+    reach = fmax(reach, conic_length(d) + (double)parts[i].bound.reach);
+    whole->ceiling = greater(whole->ceiling, parts[i].ceiling);
+  }
+  if (n > 1 && whole->is_drawn)
+    for (int i = 0; i < DIRECTIONS; i++) {
+      const screen s = screen_of(i, sh_degree);
+      look_from(&s, parts, n, whole);
+    }
+  whole->bound.light = rounded_up(safety * (double)whole->bound.light + light);
+  whole->bound.most = rounded_up(fmin(safety * (double)whole->bound.most + most, (double)whole->ceiling));
+  whole->bound.reach = rounded_up(reach);
+}

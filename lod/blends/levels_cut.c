@@ -1,0 +1,317 @@
+/* The cut through the levels that a picture shows. */
+
+#include "core/base/radix.h"
+#include "core/image/viewpoint.h"
+#include "lod/blends/levels_read.h"
+
+/* What reading and drawing take of a Gaussian that is drawn, beside its numbers: what is above it and beside it in its
+ * clouds, and what a picture sets up. */
+enum { DRAWING_BYTES = 320, WORDS_BESIDE = 3 };
+
+/* Pixels that filters of a picture reach out of an outline. */
+static const double margin_px = 4.0;
+
+typedef struct chosen {
+  uint32_t cloud, i;
+} chosen;
+
+typedef struct cutting {
+  conic_levels *levels;
+  const conic_levels_wish *wish;
+  conic_viewpoint from;
+  int is_plain; /* a pinhole without a lens: its sides are known */
+  double focal;
+  double error;
+  uint64_t most;
+  chosen *list;
+  size_t n, room;
+  uint32_t *clouds[2]; /* to be looked at in this level and the next one */
+  size_t n_clouds[2];
+  uint64_t n_merged;
+} cutting;
+
+uint64_t conic_levels_most(const conic_levels *levels) {
+  const uint64_t each = DRAWING_BYTES + 4 * WORDS_BESIDE * conic_levels_columns(&levels->header, 0);
+  return levels->memory_bytes == 0 ? UINT64_MAX : levels->memory_bytes / each + 1;
+}
+
+static float number_of(const conic_levels *l, uint32_t cloud, size_t column, size_t i) {
+  return conic_float_of_bits(l->clouds[cloud].columns[column * l->entries[cloud].n + i]);
+}
+
+/* Whether a ball can be in sight; *scale gets how many pixels a length in it has at most, infinite where it reaches the
+ * eye. */
+static int look_at(const cutting *c, const float mean[3], double reach, double *scale) {
+  double p[3];
+  conic_viewpoint_move_floats(&c->from, mean, p);
+  const double distance = conic_length(p), z = c->is_plain ? p[2] - reach : distance - reach;
+  *scale = HUGE_VAL;
+  if (c->wish->camera.kind == CONIC_CAMERA_ORTHOGRAPHIC)
+    *scale = c->focal;
+  else if (z > 0.0)
+    *scale = c->is_plain ? c->focal * (distance + reach) / (z * z) : c->focal / z;
+  return !c->is_plain || (!conic_viewpoint_misses(&c->from, p, reach) && p[2] + reach > 0.0);
+}
+
+/* By how much a pixel changes, from what was found of it at a scale. */
+static double change_of(double light, double most, double scale) {
+  const double spread = light * scale * scale;
+  return light == 0.0 ? 0.0 : spread < most ? spread : most;
+}
+
+static conic_status choose_one(cutting *c, uint32_t cloud, size_t i, int is_merged) {
+  const chosen one = {cloud, (uint32_t)i};
+  c->n_merged += (uint64_t)is_merged;
+  return conic_memory_append(c->levels->context, &c->list, &c->n, &c->room, &one, sizeof one);
+}
+
+/* Looks at those of a cloud for which what stands for them is open; *parts gets the children that are to be looked at,
+ * *n_open how many are open. */
+static conic_status look_into(cutting *c, uint32_t cloud, const unsigned char *above, int is_leaf, unsigned *parts,
+                              uint64_t *n_open) {
+  const conic_levels *l = c->levels;
+  const conic_levels_loaded *loaded = &l->clouds[cloud];
+  const size_t n = l->entries[cloud].n, n_row = conic_levels_row(&l->header);
+  const uint32_t *link = loaded->columns + (conic_levels_columns(&l->header, is_leaf) - 1) * n;
+  conic_status status = CONIC_OK;
+  for (size_t i = 0; i < n && status == CONIC_OK; i++) {
+    double scale;
+    loaded->is_open[i] = 0;
+    if (above && !above[link[i] & CONIC_LEVELS_PARENT])
+      continue;
+    const float mean[3] = {number_of(l, cloud, 0, i), number_of(l, cloud, 1, i), number_of(l, cloud, 2, i)};
+    float reach = is_leaf ? 0.0f : number_of(l, cloud, n_row + 2, i);
+    for (size_t axis = 0; axis < 3 && is_leaf; axis++)
+      reach = fmaxf(reach, CONIC_BLEND_DEVIATIONS * number_of(l, cloud, CONIC_BLEND_SCALE + axis, i));
+    if (!look_at(c, mean, (double)reach, &scale))
+      continue;
+    if (!is_leaf &&
+        change_of((double)number_of(l, cloud, n_row, i), (double)number_of(l, cloud, n_row + 1, i), scale) > c->error) {
+      loaded->is_open[i] = 1;
+      *parts |= link[i] >> CONIC_LEVELS_PARTS_BIT;
+      ++*n_open;
+    } else
+      status = choose_one(c, cloud, i, !is_leaf);
+  }
+  return status;
+}
+
+/* Cuts at an error; *is_over: more are to be drawn than may. */
+static conic_status cut_at(cutting *c, double error, int *is_over) {
+  conic_levels *l = c->levels;
+  conic_status status = CONIC_OK;
+  c->error = error;
+  c->n = 0;
+  c->n_merged = 0;
+  c->clouds[0][0] = 0;
+  c->n_clouds[0] = 1;
+  *is_over = 0;
+  for (int level = 0; level < l->shape.n_levels && status == CONIC_OK && !*is_over; level++) {
+    const uint32_t *now = c->clouds[level % 2];
+    uint32_t *next = c->clouds[!(level % 2)];
+    const int is_leaf = level + 1 == l->shape.n_levels;
+    uint64_t n_open = 0;
+    size_t n_next = 0;
+    status = conic_levels_load(l, now, c->n_clouds[level % 2]);
+    for (size_t k = 0; k < c->n_clouds[level % 2] && status == CONIC_OK; k++) {
+      const uint32_t at = now[k] - l->shape.first[level];
+      const unsigned char *above =
+          level ? l->clouds[l->shape.first[level - 1] + at / CONIC_LEVELS_CHILDREN].is_open : NULL;
+      unsigned parts = 0;
+      status = look_into(c, now[k], above, is_leaf, &parts, &n_open);
+      for (uint32_t child = 0; child < CONIC_LEVELS_CHILDREN && !is_leaf; child++)
+        if (parts >> child & 1 && CONIC_LEVELS_CHILDREN * at + child < l->shape.count[level + 1])
+          next[n_next++] = l->shape.first[level + 1] + CONIC_LEVELS_CHILDREN * at + child;
+    }
+    c->n_clouds[!(level % 2)] = n_next;
+    *is_over = c->n + n_open > c->most;
+  }
+  return status;
+}
+
+/* The least error, to a 512th of it, at which no more are drawn than may. It comes from above, so that little more is
+ * read than is needed. Errors: also INPUT (the root is more). */
+static conic_status find_error(cutting *c, double least) {
+  double high = 4.0, low = high;
+  int is_over;
+  conic_status status = cut_at(c, high, &is_over);
+  if (status == CONIC_OK && is_over)
+    return conic_fail(c->levels->context, CONIC_ERROR_INPUT,
+                      "%s: its coarsest cloud has %zu Gaussians in sight, more than may be drawn", c->levels->name,
+                      c->n);
+  while (status == CONIC_OK && !is_over && low > least) {
+    high = low;
+    low = low > 1e-9 ? fmax(0.5 * low, least) : least;
+    status = cut_at(c, low, &is_over);
+  }
+  if (!is_over)
+    return status;
+  while (status == CONIC_OK && high - low > high / 512.0) {
+    const double middle = 0.5 * (low + high);
+    status = cut_at(c, middle, &is_over);
+    *(is_over ? &low : &high) = middle;
+  }
+  return status == CONIC_OK ? cut_at(c, high, &is_over) : status;
+}
+
+/* --- what is drawn --- */
+
+/* What came stands in its own order, before all that is merged. */
+static conic_status order_chosen(const cutting *c, conic_radix_item *items) {
+  const conic_levels *l = c->levels;
+  const uint32_t first_leaf = l->shape.n_clouds - l->header.n_leaves;
+  for (size_t i = 0; i < c->n; i++) {
+    const chosen *one = &c->list[i];
+    const uint32_t *numbers = l->clouds[one->cloud].columns + conic_levels_row(&l->header) * l->entries[one->cloud].n;
+    items[i] = (conic_radix_item){one->cloud < first_leaf ? l->header.n + i : numbers[one->i], (uint32_t)i};
+  }
+  return conic_radix_sort(l->context, items, c->n, 34);
+}
+
+static void fill_row(const conic_levels *l, const chosen *one, size_t at, conic_gaussians *set) {
+  const size_t n = conic_harmonics_of_degree(set->sh_degree);
+  for (size_t axis = 0; axis < 3; axis++) {
+    set->position[axis][at] = number_of(l, one->cloud, axis, one->i);
+    set->scale[axis][at] = number_of(l, one->cloud, CONIC_BLEND_SCALE + axis, one->i);
+  }
+  for (size_t k = 0; k < 4; k++)
+    set->rotation[k][at] = number_of(l, one->cloud, CONIC_BLEND_ROTATION + k, one->i);
+  set->opacity[at] = number_of(l, one->cloud, CONIC_BLEND_OPACITY, one->i);
+  for (size_t k = 0; k < n; k++)
+    set->sh[at * n + k] = number_of(l, one->cloud, CONIC_BLEND_HARMONICS + k, one->i);
+}
+
+static conic_status fill_set(const cutting *c, int is_all, conic_gaussians *set) {
+  const conic_levels *l = c->levels;
+  conic_radix_item *items = conic_memory_allocate(l->context, c->n, sizeof *items);
+  conic_status status = items ? order_chosen(c, items) : CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < c->n && is_all && status == CONIC_OK; i++)
+    if (items[i].key != i)
+      status = conic_fail(l->context, CONIC_ERROR_INPUT, "%s: is damaged: it has no Gaussian %zu, or two", l->name, i);
+  if (status == CONIC_OK)
+    status = conic_gaussians_allocate(l->context, c->n, (int)l->header.sh_degree, 0, set);
+  if (status == CONIC_OK) {
+    memcpy(set->origin, l->header.origin, sizeof set->origin);
+    memcpy(set->frame, l->header.frame, sizeof set->frame);
+    memcpy(set->up, l->header.up, sizeof set->up);
+    set->is_antialiased = (l->header.flags & CONIC_LEVELS_ANTIALIASED) != 0;
+    set->is_linear = (l->header.flags & CONIC_LEVELS_LINEAR) != 0;
+    for (size_t i = 0; i < c->n; i++)
+      fill_row(l, &c->list[items[i].value], i, set);
+  }
+  conic_memory_release(l->context, items);
+  return status;
+}
+
+/* Adds what a merged Gaussian changes to the pixels that it may reach, as corners of a sum of sums. */
+static void add_change(const cutting *c, const chosen *one, double *sums) {
+  const conic_levels *l = c->levels;
+  const conic_camera *camera = &c->wish->camera;
+  const size_t n_row = conic_levels_row(&l->header);
+  const float mean[3] = {number_of(l, one->cloud, 0, one->i), number_of(l, one->cloud, 1, one->i),
+                         number_of(l, one->cloud, 2, one->i)};
+  const double reach = (double)number_of(l, one->cloud, n_row + 2, one->i);
+  double p[3], scale, low[2] = {0.0, 0.0}, high[2] = {camera->width, camera->height};
+  look_at(c, mean, reach, &scale);
+  const double change = change_of((double)number_of(l, one->cloud, n_row, one->i),
+                                  (double)number_of(l, one->cloud, n_row + 1, one->i), scale);
+  conic_viewpoint_move_floats(&c->from, mean, p);
+  if (c->is_plain && scale < HUGE_VAL) {
+    const double at[2] = {camera->cx + camera->fx * p[0] / p[2], camera->cy + camera->fy * p[1] / p[2]};
+    for (int axis = 0; axis < 2; axis++) {
+      const double r = scale * reach + 1.0;
+      low[axis] = fmin(fmax(floor(at[axis] - r), 0.0), high[axis]);
+      high[axis] = fmin(fmax(ceil(at[axis] + r), 0.0), high[axis]);
+    }
+  }
+  const size_t width = (size_t)camera->width + 1, x0 = (size_t)low[0], x1 = (size_t)high[0];
+  sums[(size_t)low[1] * width + x0] += change;
+  sums[(size_t)low[1] * width + x1] -= change;
+  sums[(size_t)high[1] * width + x0] -= change;
+  sums[(size_t)high[1] * width + x1] += change;
+}
+
+/* The greatest sum of what is merged at a pixel. */
+static conic_status find_bound(const cutting *c, double *bound) {
+  const size_t width = (size_t)c->wish->camera.width + 1, height = (size_t)c->wish->camera.height + 1;
+  const uint32_t first_leaf = c->levels->shape.n_clouds - c->levels->header.n_leaves;
+  double *sums = conic_memory_allocate_zeroed(c->levels->context, width * height, sizeof *sums);
+  *bound = 0.0;
+  if (!sums)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < c->n; i++)
+    if (c->list[i].cloud < first_leaf)
+      add_change(c, &c->list[i], sums);
+  for (size_t y = 0; y < height; y++)
+    for (size_t x = 0; x < width; x++) {
+      double *at = &sums[y * width + x];
+      *at += (x ? at[-1] : 0.0) + (y ? *(at - width) : 0.0) - (x && y ? *(at - width - 1) : 0.0);
+      *bound = fmax(*bound, *at);
+    }
+  conic_memory_release(c->levels->context, sums);
+  return CONIC_OK;
+}
+
+/* Takes every Gaussian of a level, whatever is in sight. */
+static conic_status take_level(cutting *c, int level) {
+  conic_levels *l = c->levels;
+  conic_status status = CONIC_OK;
+  for (uint32_t k = 0; k < l->shape.count[level] && status == CONIC_OK; k++) {
+    const uint32_t cloud = l->shape.first[level] + k;
+    status = conic_levels_load(l, &cloud, 1);
+    for (size_t i = 0; i < l->entries[cloud].n && status == CONIC_OK; i++)
+      status = choose_one(c, cloud, i, level + 1 < l->shape.n_levels);
+  }
+  return status;
+}
+
+static conic_status choose_some(cutting *c, conic_levels_cut *cut) {
+  const conic_levels_wish *wish = c->wish;
+  const uint64_t memory = conic_levels_most(c->levels);
+  int is_over = 0;
+  conic_status status = CONIC_OK;
+  c->most = wish->budget && wish->budget < memory ? wish->budget : memory;
+  if (!wish->budget)
+    status = cut_at(c, wish->error, &is_over);
+  if (status == CONIC_OK && (wish->budget || is_over)) {
+    cut->is_short = !wish->budget;
+    status = find_error(c, wish->budget ? 0.0 : wish->error);
+  }
+  cut->error = c->error;
+  return status == CONIC_OK ? find_bound(c, &cut->bound) : status;
+}
+
+/* Drops clouds that this picture did not show, where memory is scarce. */
+static void drop_others(cutting *c) {
+  conic_levels *l = c->levels;
+  uint64_t n = 0;
+  for (uint32_t i = 0; i < l->shape.n_clouds; i++)
+    n += l->clouds[i].columns ? l->entries[i].n : 0;
+  for (uint32_t i = 0; i < l->shape.n_clouds && n > conic_levels_most(l) / 2; i++)
+    conic_levels_drop(l, i);
+}
+
+conic_status conic_levels_choose(conic_levels *levels, const conic_levels_wish *wish, conic_gaussians *set,
+                                 conic_levels_cut *cut) {
+  conic_context *context = levels->context;
+  cutting c = {.levels = levels, .wish = wish, .focal = fmax(wish->camera.fx, wish->camera.fy)};
+  const int is_root = wish->part == CONIC_LEVELS_ROOT;
+  const int is_all = wish->part == CONIC_LEVELS_ALL ||
+                     (!is_root && wish->error == 0.0 && !wish->budget && levels->header.n <= conic_levels_most(levels));
+  memset(cut, 0, sizeof *cut);
+  c.is_plain = wish->camera.kind == CONIC_CAMERA_PERSPECTIVE && wish->camera.lens == CONIC_LENS_NONE;
+  if (!is_all && !is_root)
+    conic_viewpoint_init(&c.from, &wish->camera, levels->header.origin, margin_px);
+  conic_status status = conic_memory_allocate_these(context, CONIC_ROOM(c.clouds[0], levels->shape.n_clouds),
+                                                    CONIC_ROOM(c.clouds[1], levels->shape.n_clouds));
+  if (status == CONIC_OK)
+    status = is_all || is_root ? take_level(&c, is_root ? 0 : levels->shape.n_levels - 1) : choose_some(&c, cut);
+  if (status == CONIC_OK)
+    status = fill_set(&c, is_all, set);
+  cut->is_all = is_all;
+  cut->n = c.n;
+  cut->n_merged = c.n_merged;
+  conic_memory_release_these(context, c.clouds[0], c.clouds[1], c.list);
+  drop_others(&c);
+  return status;
+}

@@ -1,0 +1,68 @@
+/* A .lpc of Gaussians in levels, from a file or a URL: what a picture shows is read by ranges, and no more. */
+#pragma once
+
+#include "conic/camera.h"
+#include "conic/layers_draw.h"
+#include "lod/blends/levels_format.h"
+#include "lod/ranges/ranges.h"
+
+/* A cloud in memory: its columns, and of each Gaussian whether the last cut went on below it. */
+typedef struct conic_levels_loaded {
+  uint32_t *columns;
+  unsigned char *is_open;
+} conic_levels_loaded;
+
+typedef struct conic_levels {
+  conic_context *context;
+  char *name;
+  conic_ranges *ranges;
+  conic_zstd *zstd;
+  conic_levels_header header;
+  conic_levels_shape shape;
+  conic_levels_entry *entries;
+  conic_levels_loaded *clouds; /* by number; columns null: not in memory */
+  uint64_t memory_bytes, n_read;
+  double until_s; /* opening ends */
+} conic_levels;
+
+/* Opens a path or a URL: reads and checks header and index. Null `access` is the defaults. On success the caller owns
+ * *levels. Errors: INPUT, IO, UNSUPPORTED, MEMORY, CANCELLED. */
+conic_status conic_levels_open(conic_context *context, const char *name, const conic_layers_access *access,
+                               conic_levels **levels);
+/* Null is allowed. */
+void conic_levels_close(conic_levels *levels);
+
+/* Brings clouds into memory. Errors: INPUT (damaged), IO, MEMORY, CANCELLED. */
+conic_status conic_levels_load(conic_levels *levels, const uint32_t *clouds, size_t n);
+void conic_levels_drop(conic_levels *levels, uint32_t cloud);
+
+/* How many Gaussians can be drawn in the memory that there is. */
+uint64_t conic_levels_most(const conic_levels *levels);
+
+/* What is taken: the Gaussians of a cut; all as they came, whatever a camera sees, in any memory; or the root's. */
+typedef enum conic_levels_part { CONIC_LEVELS_CUT, CONIC_LEVELS_ALL, CONIC_LEVELS_ROOT } conic_levels_part;
+
+typedef struct conic_levels_wish {
+  conic_levels_part part;
+  conic_camera camera;
+  double error;    /* 0: all, or as the budget and memory allow */
+  uint64_t budget; /* 0: none */
+} conic_levels_wish;
+
+typedef struct conic_levels_cut {
+  double error;         /* kept */
+  double bound;         /* of a pixel, by all that is merged */
+  uint64_t n, n_merged; /* drawn */
+  int is_all, is_short; /* all that there is; is_short: the memory made it coarser than it was to be */
+} conic_levels_cut;
+
+/* Chooses Gaussians; the caller releases them. Errors: as conic_levels_load. */
+conic_status conic_levels_choose(conic_levels *levels, const conic_levels_wish *wish, conic_gaussians *set,
+                                 conic_levels_cut *cut);
+
+/* Reads all of a file as a scene. Errors: as conic_levels_open. */
+conic_status conic_levels_read(conic_context *context, const char *path, conic_gaussians *set);
+
+/* Decodes every cloud, and counts those that are damaged, and those with a bound below that of what it stands for.
+ * Errors: as conic_levels_open. */
+conic_status conic_levels_check(conic_levels *levels, uint64_t *n_damaged, uint64_t *n_unbounded);
