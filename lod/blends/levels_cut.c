@@ -53,10 +53,9 @@ static int look_at(const cutting *c, const float mean[3], double reach, double *
   return !c->is_plain || (!conic_viewpoint_misses(&c->from, p, reach) && p[2] + reach > 0.0);
 }
 
-/* By how much a pixel changes, from what was found of it at a scale. */
-static double change_of(double light, double most, double scale) {
-  const double spread = light * scale * scale;
-  return light == 0.0 ? 0.0 : spread < most ? spread : most;
+/* The light that is elsewhere, in pixels. */
+static double light_of(double light, double scale) {
+  return light == 0.0 ? 0.0 : light * scale * scale;
 }
 
 static conic_status choose_one(cutting *c, uint32_t cloud, size_t i, int is_merged) {
@@ -85,8 +84,7 @@ static conic_status look_into(cutting *c, uint32_t cloud, const unsigned char *a
       reach = fmaxf(reach, CONIC_BLEND_DEVIATIONS * number_of(l, cloud, CONIC_BLEND_SCALE + axis, i));
     if (!look_at(c, mean, (double)reach, &scale))
       continue;
-    if (!is_leaf &&
-        change_of((double)number_of(l, cloud, n_row, i), (double)number_of(l, cloud, n_row + 1, i), scale) > c->error) {
+    if (!is_leaf && light_of((double)number_of(l, cloud, n_row, i), scale) > c->error) {
       loaded->is_open[i] = 1;
       *parts |= link[i] >> CONIC_LEVELS_PARTS_BIT;
       ++*n_open;
@@ -132,7 +130,7 @@ static conic_status cut_at(cutting *c, double error, int *is_over) {
 /* The least error, to a 512th of it, at which no more are drawn than may. It comes from above, so that little more is
  * read than is needed. Errors: also INPUT (the root is more). */
 static conic_status find_error(cutting *c, double least) {
-  double high = 4.0, low = high;
+  double high = 1e12, low = high;
   int is_over;
   conic_status status = cut_at(c, high, &is_over);
   if (status == CONIC_OK && is_over)
@@ -141,7 +139,7 @@ static conic_status find_error(cutting *c, double least) {
                       c->n);
   while (status == CONIC_OK && !is_over && low > least) {
     high = low;
-    low = low > 1e-9 ? fmax(0.5 * low, least) : least;
+    low = low > 1e-9 ? fmax(0.25 * low, least) : least;
     status = cut_at(c, low, &is_over);
   }
   if (!is_over)
@@ -203,53 +201,15 @@ static conic_status fill_set(const cutting *c, int is_all, conic_gaussians *set)
   return status;
 }
 
-/* Adds what a merged Gaussian changes to the pixels that it may reach, as corners of a sum of sums. */
-static void add_change(const cutting *c, const chosen *one, double *sums) {
+/* The greatest change of a pixel by one that is merged. */
+static double find_bound(const cutting *c) {
   const conic_levels *l = c->levels;
-  const conic_camera *camera = &c->wish->camera;
   const size_t n_row = conic_levels_row(&l->header);
-  const float mean[3] = {number_of(l, one->cloud, 0, one->i), number_of(l, one->cloud, 1, one->i),
-                         number_of(l, one->cloud, 2, one->i)};
-  const double reach = (double)number_of(l, one->cloud, n_row + 2, one->i);
-  double p[3], scale, low[2] = {0.0, 0.0}, high[2] = {camera->width, camera->height};
-  look_at(c, mean, reach, &scale);
-  const double change = change_of((double)number_of(l, one->cloud, n_row, one->i),
-                                  (double)number_of(l, one->cloud, n_row + 1, one->i), scale);
-  conic_viewpoint_move_floats(&c->from, mean, p);
-  if (c->is_plain && scale < HUGE_VAL) {
-    const double at[2] = {camera->cx + camera->fx * p[0] / p[2], camera->cy + camera->fy * p[1] / p[2]};
-    for (int axis = 0; axis < 2; axis++) {
-      const double r = scale * reach + 1.0;
-      low[axis] = fmin(fmax(floor(at[axis] - r), 0.0), high[axis]);
-      high[axis] = fmin(fmax(ceil(at[axis] + r), 0.0), high[axis]);
-    }
-  }
-  const size_t width = (size_t)camera->width + 1, x0 = (size_t)low[0], x1 = (size_t)high[0];
-  sums[(size_t)low[1] * width + x0] += change;
-  sums[(size_t)low[1] * width + x1] -= change;
-  sums[(size_t)high[1] * width + x0] -= change;
-  sums[(size_t)high[1] * width + x1] += change;
-}
-
-/* The greatest sum of what is merged at a pixel. */
-static conic_status find_bound(const cutting *c, double *bound) {
-  const size_t width = (size_t)c->wish->camera.width + 1, height = (size_t)c->wish->camera.height + 1;
-  const uint32_t first_leaf = c->levels->shape.n_clouds - c->levels->header.n_leaves;
-  double *sums = conic_memory_allocate_zeroed(c->levels->context, width * height, sizeof *sums);
-  *bound = 0.0;
-  if (!sums)
-    return CONIC_ERROR_MEMORY;
+  double bound = 0.0;
   for (size_t i = 0; i < c->n; i++)
-    if (c->list[i].cloud < first_leaf)
-      add_change(c, &c->list[i], sums);
-  for (size_t y = 0; y < height; y++)
-    for (size_t x = 0; x < width; x++) {
-      double *at = &sums[y * width + x];
-      *at += (x ? at[-1] : 0.0) + (y ? *(at - width) : 0.0) - (x && y ? *(at - width - 1) : 0.0);
-      *bound = fmax(*bound, *at);
-    }
-  conic_memory_release(c->levels->context, sums);
-  return CONIC_OK;
+    if (c->list[i].cloud < l->shape.n_clouds - l->header.n_leaves)
+      bound = fmax(bound, (double)number_of(l, c->list[i].cloud, n_row + 1, c->list[i].i));
+  return fmin(bound, c->error);
 }
 
 /* Takes every Gaussian of a level, whatever is in sight. */
@@ -278,7 +238,8 @@ static conic_status choose_some(cutting *c, conic_levels_cut *cut) {
     status = find_error(c, wish->budget ? 0.0 : wish->error);
   }
   cut->error = c->error;
-  return status == CONIC_OK ? find_bound(c, &cut->bound) : status;
+  cut->bound = find_bound(c);
+  return status;
 }
 
 /* Drops clouds that this picture did not show, where memory is scarce. */
