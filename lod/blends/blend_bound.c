@@ -70,27 +70,27 @@ static trace trace_of(const screen *s, const conic_blend *b, const double from[3
   return t;
 }
 
-static float alpha_at(const trace *t, double at_x, double at_y) {
-  const float x = (float)(at_x - t->x), y = (float)(at_y - t->y);
-  const float q = t->xx * x * x + 2.0f * t->xy * x * y + t->yy * y * y;
-  const float alpha = q < 16.0f ? t->opacity * conic_exp_negative(-0.5f * q) : 0.0f;
-  return alpha < 0.99f ? alpha : 0.99f;
-}
+/* Places on the screen, and what is seen there: light, and what is left of it. A multiple of the lanes of vectors. */
+enum { MOST_PLACES = (SIDE * SIDE + CONIC_BLEND_MOST_PARTS + 7) / 8 * 8 };
 
-/* The greatest change of a colour or of the opacity at a place. The parts lie in the order of their depths. */
-static float change_at(const trace *whole, const trace *parts, size_t n, double x, double y) {
-  const float own = alpha_at(whole, x, y);
-  float left = 1.0f, sum[3] = {0.0f, 0.0f, 0.0f};
-  for (size_t i = 0; i < n; i++) {
-    const float alpha = alpha_at(&parts[i], x, y);
+typedef struct places {
+  size_t n;
+  float x[MOST_PLACES], y[MOST_PLACES], left[MOST_PLACES], sum[3][MOST_PLACES];
+} places;
+
+/* Lays one before what is behind those that came before it. */
+static void lay_down(const trace *t, places *at) {
+  const float x0 = (float)t->x, y0 = (float)t->y;
+  for (size_t i = 0; i < MOST_PLACES; i++) {
+    const float x = at->x[i] - x0, y = at->y[i] - y0;
+    const float q = t->xx * x * x + 2.0f * t->xy * x * y + t->yy * y * y;
+    float alpha = t->opacity * conic_exp_negative(-0.5f * q);
+    alpha = alpha < 0.99f ? alpha : 0.99f;
+    const float weight = at->left[i] * alpha;
     for (int c = 0; c < 3; c++)
-      sum[c] += left * alpha * parts[i].color[c];
-    left *= 1.0f - alpha;
+      at->sum[c][i] += weight * t->color[c];
+    at->left[i] -= weight;
   }
-  float most = fabsf(1.0f - left - own);
-  for (int c = 0; c < 3; c++)
-    most = greater(most, fabsf(sum[c] - own * whole->color[c]));
-  return most;
 }
 
 static void order_by_depth(trace *parts, size_t n) {
@@ -120,15 +120,30 @@ static void look_from(const screen *s, const conic_blend *parts, size_t n, conic
   /* a square of the ellipse's own axes: L of Σ = L·Lᵀ turns the unit square into them */
   const double det = root * root, xx = (double)own.yy * det, xy = -(double)own.xy * det;
   const double l_xx = sqrt(xx), l_yx = xy / l_xx, l_yy = root / l_xx, step = 2.0 * half_width / SIDE;
+  places at = {.n = 0};
   for (int row = 0; row < SIDE; row++)
     for (int column = 0; column < SIDE; column++) {
       const double u = (column + 0.5) * step - half_width, v = (row + 0.5) * step - half_width;
-      const float change = change_at(&own, traces, n, l_xx * u, l_yx * u + l_yy * v);
-      sum += (double)change;
-      most = greater(most, change);
+      at.x[at.n] = (float)(l_xx * u);
+      at.y[at.n++] = (float)(l_yx * u + l_yy * v);
     }
+  for (size_t i = 0; i < n; i++) {
+    at.x[at.n] = (float)traces[i].x;
+    at.y[at.n++] = (float)traces[i].y;
+  }
+  places alone = at;
+  for (size_t i = 0; i < MOST_PLACES; i++)
+    at.left[i] = alone.left[i] = 1.0f;
+  lay_down(&own, &alone);
   for (size_t i = 0; i < n; i++)
-    most = greater(most, change_at(&own, traces, n, traces[i].x, traces[i].y));
+    lay_down(&traces[i], &at);
+  for (size_t i = 0; i < at.n; i++) {
+    float change = fabsf(at.left[i] - alone.left[i]);
+    for (int c = 0; c < 3; c++)
+      change = greater(change, fabsf(at.sum[c][i] - alone.sum[c][i]));
+    sum += i < SIDE * SIDE ? (double)change : 0.0;
+    most = greater(most, change);
+  }
   whole->bound.most = greater(whole->bound.most, most);
   whole->bound.light = greater(whole->bound.light, (float)(sum * step * step * root));
 }

@@ -6,7 +6,7 @@
 #include "core/splats/kernel.h"
 #include "lod/blends/blend.h"
 
-enum { NEAREST = 8, MOST_EDGES = 24 };
+enum { NEAREST = 6, MOST_EDGES = 16 };
 
 /* A Gaussian as an axis sees it. */
 typedef struct shadow {
@@ -72,6 +72,7 @@ typedef struct knot {
   uint32_t into; /* what it became part of; itself: it is still there */
   uint32_t n_parts, n_near;
   uint32_t near[MOST_EDGES], best; /* neighbours, which may have been merged since; best: the cheapest of them */
+  double costs[MOST_EDGES];        /* below 0: not found yet */
 } knot;
 
 typedef struct merging {
@@ -90,6 +91,13 @@ static uint32_t root_knot(const merging *m, uint32_t i) {
   return i;
 }
 
+static int is_near(const knot *k, uint32_t n, uint32_t other) {
+  for (uint32_t e = 0; e < n; e++)
+    if (k->near[e] == other)
+      return 1;
+  return 0;
+}
+
 /* Finds a knot's cheapest partner and puts it into the queue. */
 static void enqueue(merging *m, uint32_t i) {
   knot *k = &m->knots[i];
@@ -97,17 +105,16 @@ static void enqueue(merging *m, uint32_t i) {
   double least = HUGE_VAL;
   for (uint32_t e = 0; e < k->n_near; e++) {
     const uint32_t other = root_knot(m, k->near[e]);
-    int is_known = other == i;
-    for (uint32_t f = 0; f < n; f++)
-      is_known |= k->near[f] == other;
-    if (is_known)
+    if (other == i || is_near(k, n, other))
       continue;
-    k->near[n++] = other;
+    const double known = other == k->near[e] ? k->costs[e] : -1.0;
+    k->near[n] = other;
+    k->costs[n++] = known;
     if (k->n_parts + m->knots[other].n_parts > CONIC_BLEND_MOST_PARTS)
       continue;
-    const double cost = conic_blend_cost(&m->now[i], &m->now[other]);
-    if (cost < least) {
-      least = cost;
+    k->costs[n - 1] = known < 0.0 ? conic_blend_cost(&m->now[i], &m->now[other]) : known;
+    if (k->costs[n - 1] < least) {
+      least = k->costs[n - 1];
       k->best = other;
     }
   }
@@ -134,7 +141,8 @@ static void join_knots(merging *m, uint32_t a, uint32_t b) {
         for (uint32_t f = 0; f < k->n_near; f++)
           is_known |= k->near[f] == other;
         if (!is_known)
-          k->near[k->n_near++] = other;
+          k->costs[k->n_near] = -1.0;
+        k->near[k->n_near++] = other;
       }
   enqueue(m, i);
 }
@@ -162,6 +170,8 @@ static conic_status find_near(merging *m) {
         k->near[k->n_near++] = first;
       for (size_t e = 0; e < n; e++)
         k->near[k->n_near++] = tree.point_of_slot[slots[e]];
+      for (size_t e = 0; e < MOST_EDGES; e++)
+        k->costs[e] = -1.0;
     }
     conic_neighbours_release(m->context, &tree);
   }
