@@ -36,6 +36,12 @@ static inline double conic_length(const double v[3]) {
   return sqrt(conic_dot(v, v));
 }
 
+/* aᵀ·M·b of such a matrix. */
+static inline double conic_quadratic_form(const double m[6], const double a[3], const double b[3]) {
+  return a[0] * (m[0] * b[0] + m[1] * b[1] + m[2] * b[2]) + a[1] * (m[1] * b[0] + m[3] * b[1] + m[4] * b[2]) +
+         a[2] * (m[2] * b[0] + m[4] * b[1] + m[5] * b[2]);
+}
+
 /* The cosine of the angle between two vectors; −1 where one has no direction. Axes that are kept as floats are not of
  * length 1: beside a cosine near 1, that would be much of the angle. */
 static inline double conic_cosine_between(const double a[3], const double b[3]) {

@@ -39,15 +39,11 @@ static float greater(float a, float b) {
   return a > b ? a : b;
 }
 
-static double quadratic(const double c[6], const double a[3], const double b[3]) {
-  return a[0] * (c[0] * b[0] + c[1] * b[1] + c[2] * b[2]) + a[1] * (c[1] * b[0] + c[3] * b[1] + c[4] * b[2]) +
-         a[2] * (c[2] * b[0] + c[4] * b[1] + c[5] * b[2]);
-}
-
 static trace trace_of(const screen *s, const conic_blend *b, const double from[3], double *root) {
   trace t = {.opacity = b->is_drawn ? b->row[CONIC_BLEND_OPACITY] : 0.0f};
-  double d[3], xx = quadratic(b->covariance, s->right, s->right), xy = quadratic(b->covariance, s->right, s->down),
-               yy = quadratic(b->covariance, s->down, s->down), det;
+  double d[3], xx = conic_quadratic_form(b->covariance, s->right, s->right),
+               xy = conic_quadratic_form(b->covariance, s->right, s->down),
+               yy = conic_quadratic_form(b->covariance, s->down, s->down), det;
   conic_subtract(b->mean, from, d);
   t.x = conic_dot(d, s->right);
   t.y = conic_dot(d, s->down);
@@ -73,13 +69,13 @@ static trace trace_of(const screen *s, const conic_blend *b, const double from[3
 /* Places on the screen, and what is seen there: light, and what is left of it. A multiple of the lanes of vectors. */
 enum { MOST_PLACES = (SIDE * SIDE + CONIC_BLEND_MOST_PARTS + 7) / 8 * 8 };
 
-typedef struct places {
+typedef struct seen_places {
   size_t n;
   float x[MOST_PLACES], y[MOST_PLACES], left[MOST_PLACES], sum[3][MOST_PLACES];
-} places;
+} seen_places;
 
 /* Lays one before what is behind those that came before it. */
-static void lay_down(const trace *t, places *at) {
+static void lay_down(const trace *t, seen_places *at) {
   const float x0 = (float)t->x, y0 = (float)t->y;
   for (size_t i = 0; i < MOST_PLACES; i++) {
     const float x = at->x[i] - x0, y = at->y[i] - y0;
@@ -120,7 +116,7 @@ static void look_from(const screen *s, const conic_blend *parts, size_t n, conic
   /* a square of the ellipse's own axes: L of Σ = L·Lᵀ turns the unit square into them */
   const double det = root * root, xx = (double)own.yy * det, xy = -(double)own.xy * det;
   const double l_xx = sqrt(xx), l_yx = xy / l_xx, l_yy = root / l_xx, step = 2.0 * half_width / SIDE;
-  places at = {.n = 0};
+  seen_places at = {.n = 0};
   for (int row = 0; row < SIDE; row++)
     for (int column = 0; column < SIDE; column++) {
       const double u = (column + 0.5) * step - half_width, v = (row + 0.5) * step - half_width;
@@ -131,7 +127,7 @@ static void look_from(const screen *s, const conic_blend *parts, size_t n, conic
     at.x[at.n] = (float)traces[i].x;
     at.y[at.n++] = (float)traces[i].y;
   }
-  places alone = at;
+  seen_places alone = at;
   for (size_t i = 0; i < MOST_PLACES; i++)
     at.left[i] = alone.left[i] = 1.0f;
   lay_down(&own, &alone);

@@ -68,30 +68,30 @@ double conic_blend_cost(const conic_blend *a, const conic_blend *b) {
 }
 
 /* A node of those that are merged: a Gaussian, or a pair of such. */
-typedef struct knot {
+typedef struct blend_knot {
   uint32_t into; /* what it became part of; itself: it is still there */
   uint32_t n_parts, n_near;
   uint32_t near[MOST_EDGES], best; /* neighbours, which may have been merged since; best: the cheapest of them */
   double costs[MOST_EDGES];        /* below 0: not found yet */
-} knot;
+} blend_knot;
 
-typedef struct merging {
+typedef struct blend_merging {
   conic_context *context;
   const conic_blend *blends;
   size_t n, n_knots;
   conic_blend *now; /* by knot */
   float (*rows)[CONIC_BLEND_HARMONICS + 3];
-  knot *knots;
+  blend_knot *knots;
   conic_heap heap;
-} merging;
+} blend_merging;
 
-static uint32_t root_knot(const merging *m, uint32_t i) {
+static uint32_t root_knot(const blend_merging *m, uint32_t i) {
   while (m->knots[i].into != i)
     i = m->knots[i].into;
   return i;
 }
 
-static int is_near(const knot *k, uint32_t n, uint32_t other) {
+static int is_near(const blend_knot *k, uint32_t n, uint32_t other) {
   for (uint32_t e = 0; e < n; e++)
     if (k->near[e] == other)
       return 1;
@@ -99,8 +99,8 @@ static int is_near(const knot *k, uint32_t n, uint32_t other) {
 }
 
 /* Finds a knot's cheapest partner and puts it into the queue. */
-static void enqueue(merging *m, uint32_t i) {
-  knot *k = &m->knots[i];
+static void enqueue(blend_merging *m, uint32_t i) {
+  blend_knot *k = &m->knots[i];
   uint32_t n = 0;
   double least = HUGE_VAL;
   for (uint32_t e = 0; e < k->n_near; e++) {
@@ -124,15 +124,15 @@ static void enqueue(merging *m, uint32_t i) {
     conic_heap_push(&m->heap, i);
 }
 
-static void join_knots(merging *m, uint32_t a, uint32_t b) {
+static void join_knots(blend_merging *m, uint32_t a, uint32_t b) {
   const uint32_t i = (uint32_t)m->n_knots++;
-  knot *k = &m->knots[i];
+  blend_knot *k = &m->knots[i];
   const conic_blend parts[2] = {m->now[a], m->now[b]};
   conic_blend_merge(parts, 2, 0, m->rows[i]);
   conic_blend_take(m->rows[i], 0, &m->now[i]);
-  *k = (knot){.into = i, .n_parts = m->knots[a].n_parts + m->knots[b].n_parts};
+  *k = (blend_knot){.into = i, .n_parts = m->knots[a].n_parts + m->knots[b].n_parts};
   m->knots[a].into = m->knots[b].into = i;
-  const knot *both[2] = {&m->knots[a], &m->knots[b]};
+  const blend_knot *both[2] = {&m->knots[a], &m->knots[b]};
   for (uint32_t e = 0; e < MOST_EDGES; e++) /* in turns, so that neither's are left out */
     for (int side = 0; side < 2; side++)
       if (e < both[side]->n_near && k->n_near < MOST_EDGES) {
@@ -147,7 +147,7 @@ static void join_knots(merging *m, uint32_t a, uint32_t b) {
   enqueue(m, i);
 }
 
-static conic_status find_near(merging *m) {
+static conic_status find_near(blend_merging *m) {
   float *places[3] = {NULL, NULL, NULL};
   conic_neighbours tree;
   conic_status status = conic_memory_allocate_these(m->context, CONIC_ROOM(places[0], m->n),
@@ -162,8 +162,8 @@ static conic_status find_near(merging *m) {
       uint32_t slots[NEAREST];
       double distances2[NEAREST];
       const uint32_t own = tree.slot_of_point[i];
-      knot *k = &m->knots[i];
-      *k = (knot){.into = (uint32_t)i, .n_parts = 1};
+      blend_knot *k = &m->knots[i];
+      *k = (blend_knot){.into = (uint32_t)i, .n_parts = 1};
       const uint32_t first = tree.point_of_slot[own];
       size_t n = conic_neighbours_nearest(&tree, m->blends[i].mean, own, NEAREST, HUGE_VAL, slots, distances2);
       if (first != i) /* at the same place */
@@ -180,7 +180,7 @@ static conic_status find_near(merging *m) {
 }
 
 /* Where neighbours were not enough, as with many at one place: joins what follows each other. */
-static void join_in_order(merging *m, size_t n_left, size_t n_wanted) {
+static void join_in_order(blend_merging *m, size_t n_left, size_t n_wanted) {
   size_t n_before = n_left + 1;
   while (n_left > n_wanted && n_left < n_before) {
     const size_t end = m->n_knots;
@@ -200,12 +200,12 @@ static void join_in_order(merging *m, size_t n_left, size_t n_wanted) {
 }
 
 /* Numbers what is left by first parts. */
-static size_t number_groups(const merging *m, uint32_t *group) {
+static size_t number_groups(const blend_merging *m, uint32_t *group) {
   uint32_t n = 0;
   for (size_t i = 0; i < m->n_knots; i++)
     m->knots[i].best = UINT32_MAX;
   for (size_t i = 0; i < m->n; i++) {
-    knot *k = &m->knots[root_knot(m, (uint32_t)i)];
+    blend_knot *k = &m->knots[root_knot(m, (uint32_t)i)];
     if (k->best == UINT32_MAX)
       k->best = n++;
     group[i] = k->best;
@@ -215,7 +215,7 @@ static size_t number_groups(const merging *m, uint32_t *group) {
 
 conic_status conic_blend_group(conic_context *context, const conic_blend *blends, size_t n, size_t n_wanted,
                                uint32_t *group, size_t *n_groups) {
-  merging m = {.context = context, .blends = blends, .n = n, .n_knots = n};
+  blend_merging m = {.context = context, .blends = blends, .n = n, .n_knots = n};
   size_t n_left = n;
   conic_status status = conic_memory_allocate_these(context, CONIC_ROOM(m.now, 2 * n), CONIC_ROOM(m.rows, 2 * n),
                                                     CONIC_ROOM(m.knots, 2 * n), CONIC_ROOM(m.heap.slots, 2 * n),

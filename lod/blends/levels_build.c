@@ -5,7 +5,8 @@
 #include "core/files/spool.h"
 #include "lod/blends/levels_tree.h"
 
-enum { KEY_BITS = 21, BLOCK_ROWS = 4096, WRITE_ROWS = 256, SAMPLES = 512 };
+/* AT_ONCE_BYTES: of clouds of a level that wait for others, about; the order of the file depends on it. */
+enum { KEY_BITS = 21, BLOCK_ROWS = 4096, WRITE_ROWS = 256, SAMPLES = 512, AT_ONCE_BYTES = 1 << 26 };
 
 /* A Gaussian on its way: its row, and its number as the last of its words. */
 struct conic_levels_builder {
@@ -308,7 +309,7 @@ static conic_status write_levels(conic_levels_builder *b) {
   conic_levels_header *h = &b->header;
   const uint64_t n_bytes = h->n * b->n_words * sizeof(float), a_part = b->memory_bytes / 4;
   const uint64_t a_cloud = (uint64_t)h->cloud_size * 3 * b->n_words * sizeof(float);
-  const uint64_t n_at_once = b->memory_bytes / 8 / (a_cloud * CONIC_LEVELS_CHILDREN * CONIC_LEVELS_CHILDREN);
+  const uint64_t n_at_once = AT_ONCE_BYTES / (a_cloud * CONIC_LEVELS_CHILDREN * CONIC_LEVELS_CHILDREN);
   const double extent = fmax(h->high[0] - h->low[0], fmax(h->high[1] - h->low[1], h->high[2] - h->low[2]));
   b->per_cell = extent > 0.0 ? ((double)(1 << KEY_BITS) - 0.5) / extent : 0.0;
   h->n_leaves = (uint32_t)((h->n + h->cloud_size - 1) / h->cloud_size);

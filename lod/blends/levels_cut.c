@@ -15,7 +15,7 @@ typedef struct chosen {
   uint32_t cloud, i;
 } chosen;
 
-typedef struct cutting {
+typedef struct level_cutting {
   conic_levels *levels;
   const conic_levels_wish *wish;
   conic_viewpoint from;
@@ -28,7 +28,7 @@ typedef struct cutting {
   uint32_t *clouds[2]; /* to be looked at in this level and the next one */
   size_t n_clouds[2];
   uint64_t n_merged;
-} cutting;
+} level_cutting;
 
 uint64_t conic_levels_most(const conic_levels *levels) {
   const uint64_t each = DRAWING_BYTES + 4 * WORDS_BESIDE * conic_levels_columns(&levels->header, 0);
@@ -41,7 +41,7 @@ static float number_of(const conic_levels *l, uint32_t cloud, size_t column, siz
 
 /* Whether a ball can be in sight; *scale gets how many pixels a length in it has at most, infinite where it reaches the
  * eye. */
-static int look_at(const cutting *c, const float mean[3], double reach, double *scale) {
+static int look_at(const level_cutting *c, const float mean[3], double reach, double *scale) {
   double p[3];
   conic_viewpoint_move_floats(&c->from, mean, p);
   const double distance = conic_length(p), z = c->is_plain ? p[2] - reach : distance - reach;
@@ -58,16 +58,16 @@ static double light_of(double light, double scale) {
   return light == 0.0 ? 0.0 : light * scale * scale;
 }
 
-static conic_status choose_one(cutting *c, uint32_t cloud, size_t i, int is_merged) {
+static conic_status choose_one(level_cutting *c, uint32_t cloud, size_t i, int is_leaf) {
   const chosen one = {cloud, (uint32_t)i};
-  c->n_merged += (uint64_t)is_merged;
+  c->n_merged += !is_leaf && number_of(c->levels, cloud, conic_levels_row(&c->levels->header), i) > 0.0f;
   return conic_memory_append(c->levels->context, &c->list, &c->n, &c->room, &one, sizeof one);
 }
 
 /* Looks at those of a cloud for which what stands for them is open; *parts gets the children that are to be looked at,
  * *n_open how many are open. */
-static conic_status look_into(cutting *c, uint32_t cloud, const unsigned char *above, int is_leaf, unsigned *parts,
-                              uint64_t *n_open) {
+static conic_status look_into(level_cutting *c, uint32_t cloud, const unsigned char *above, int is_leaf,
+                              unsigned *parts, uint64_t *n_open) {
   const conic_levels *l = c->levels;
   const conic_levels_loaded *loaded = &l->clouds[cloud];
   const size_t n = l->entries[cloud].n, n_row = conic_levels_row(&l->header);
@@ -89,13 +89,13 @@ static conic_status look_into(cutting *c, uint32_t cloud, const unsigned char *a
       *parts |= link[i] >> CONIC_LEVELS_PARTS_BIT;
       ++*n_open;
     } else
-      status = choose_one(c, cloud, i, !is_leaf);
+      status = choose_one(c, cloud, i, is_leaf);
   }
   return status;
 }
 
 /* Cuts at an error; *is_over: more are to be drawn than may. */
-static conic_status cut_at(cutting *c, double error, int *is_over) {
+static conic_status cut_at(level_cutting *c, double error, int *is_over) {
   conic_levels *l = c->levels;
   conic_status status = CONIC_OK;
   c->error = error;
@@ -129,7 +129,7 @@ static conic_status cut_at(cutting *c, double error, int *is_over) {
 
 /* The least error, to a 512th of it, at which no more are drawn than may. It comes from above, so that little more is
  * read than is needed. Errors: also INPUT (the root is more). */
-static conic_status find_error(cutting *c, double least) {
+static conic_status find_error(level_cutting *c, double least) {
   double high = 1e12, low = high;
   int is_over;
   conic_status status = cut_at(c, high, &is_over);
@@ -155,7 +155,7 @@ static conic_status find_error(cutting *c, double least) {
 /* --- what is drawn --- */
 
 /* What came stands in its own order, before all that is merged. */
-static conic_status order_chosen(const cutting *c, conic_radix_item *items) {
+static conic_status order_chosen(const level_cutting *c, conic_radix_item *items) {
   const conic_levels *l = c->levels;
   const uint32_t first_leaf = l->shape.n_clouds - l->header.n_leaves;
   for (size_t i = 0; i < c->n; i++) {
@@ -179,7 +179,7 @@ static void fill_row(const conic_levels *l, const chosen *one, size_t at, conic_
     set->sh[at * n + k] = number_of(l, one->cloud, CONIC_BLEND_HARMONICS + k, one->i);
 }
 
-static conic_status fill_set(const cutting *c, int is_all, conic_gaussians *set) {
+static conic_status fill_set(const level_cutting *c, int is_all, conic_gaussians *set) {
   const conic_levels *l = c->levels;
   conic_radix_item *items = conic_memory_allocate(l->context, c->n, sizeof *items);
   conic_status status = items ? order_chosen(c, items) : CONIC_ERROR_MEMORY;
@@ -202,7 +202,7 @@ static conic_status fill_set(const cutting *c, int is_all, conic_gaussians *set)
 }
 
 /* The greatest change of a pixel by one that is merged. */
-static double find_bound(const cutting *c) {
+static double find_bound(const level_cutting *c) {
   const conic_levels *l = c->levels;
   const size_t n_row = conic_levels_row(&l->header);
   double bound = 0.0;
@@ -213,19 +213,19 @@ static double find_bound(const cutting *c) {
 }
 
 /* Takes every Gaussian of a level, whatever is in sight. */
-static conic_status take_level(cutting *c, int level) {
+static conic_status take_level(level_cutting *c, int level) {
   conic_levels *l = c->levels;
   conic_status status = CONIC_OK;
   for (uint32_t k = 0; k < l->shape.count[level] && status == CONIC_OK; k++) {
     const uint32_t cloud = l->shape.first[level] + k;
     status = conic_levels_load(l, &cloud, 1);
     for (size_t i = 0; i < l->entries[cloud].n && status == CONIC_OK; i++)
-      status = choose_one(c, cloud, i, level + 1 < l->shape.n_levels);
+      status = choose_one(c, cloud, i, level + 1 == l->shape.n_levels);
   }
   return status;
 }
 
-static conic_status choose_some(cutting *c, conic_levels_cut *cut) {
+static conic_status choose_some(level_cutting *c, conic_levels_cut *cut) {
   const conic_levels_wish *wish = c->wish;
   const uint64_t memory = conic_levels_most(c->levels);
   int is_over = 0;
@@ -243,7 +243,7 @@ static conic_status choose_some(cutting *c, conic_levels_cut *cut) {
 }
 
 /* Drops clouds that this picture did not show, where memory is scarce. */
-static void drop_others(cutting *c) {
+static void drop_others(level_cutting *c) {
   conic_levels *l = c->levels;
   uint64_t n = 0;
   for (uint32_t i = 0; i < l->shape.n_clouds; i++)
@@ -255,7 +255,7 @@ static void drop_others(cutting *c) {
 conic_status conic_levels_choose(conic_levels *levels, const conic_levels_wish *wish, conic_gaussians *set,
                                  conic_levels_cut *cut) {
   conic_context *context = levels->context;
-  cutting c = {.levels = levels, .wish = wish, .focal = fmax(wish->camera.fx, wish->camera.fy)};
+  level_cutting c = {.levels = levels, .wish = wish, .focal = fmax(wish->camera.fx, wish->camera.fy)};
   const int is_root = wish->part == CONIC_LEVELS_ROOT;
   const int is_all = wish->part == CONIC_LEVELS_ALL ||
                      (!is_root && wish->error == 0.0 && !wish->budget && levels->header.n <= conic_levels_most(levels));

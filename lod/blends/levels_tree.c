@@ -27,18 +27,18 @@ struct conic_levels_tree {
 };
 
 /* Four clouds that become one, and their bytes. */
-typedef struct joining {
+typedef struct cloud_joining {
   conic_levels_cloud *children, made;
   size_t n_children, n_bytes[CONIC_LEVELS_CHILDREN];
   unsigned char *bytes[CONIC_LEVELS_CHILDREN];
   conic_status status;
-} joining;
+} cloud_joining;
 
-typedef struct joinings {
+typedef struct cloud_joinings {
   conic_levels_tree *tree;
-  joining *list;
+  cloud_joining *list;
   int is_leaf;
-} joinings;
+} cloud_joinings;
 
 conic_status conic_levels_cloud_allocate(conic_context *context, size_t n, size_t n_row, conic_levels_cloud *cloud) {
   cloud->n = n;
@@ -85,7 +85,7 @@ typedef struct join_room {
   uint32_t *group, *order, *first, *child; /* first: of each group in the order; child: of each blend */
 } join_room;
 
-static void take_children(const conic_levels_tree *tree, const joining *j, join_room *room) {
+static void take_children(const conic_levels_tree *tree, const cloud_joining *j, join_room *room) {
   size_t at = 0;
   for (size_t c = 0; c < j->n_children; c++)
     for (size_t i = 0; i < j->children[c].n; i++, at++) {
@@ -114,7 +114,7 @@ static void order_by_group(const uint32_t *group, size_t n, size_t n_groups, uin
 }
 
 /* Makes the cloud above. */
-static void merge_groups(const conic_levels_tree *tree, joining *j, const join_room *room, size_t n_groups) {
+static void merge_groups(const conic_levels_tree *tree, cloud_joining *j, const join_room *room, size_t n_groups) {
   const int degree = (int)tree->header.sh_degree;
   for (size_t g = 0; g < n_groups; g++) {
     const size_t n = room->first[g + 1] - room->first[g];
@@ -136,7 +136,8 @@ static void merge_groups(const conic_levels_tree *tree, joining *j, const join_r
   }
 }
 
-static conic_status pack_children(const joinings *all, const tree_hand *hand, joining *j, const uint32_t *group) {
+static conic_status pack_children(const cloud_joinings *all, const tree_hand *hand, cloud_joining *j,
+                                  const uint32_t *group) {
   conic_status status = CONIC_OK;
   for (size_t c = 0; c < j->n_children && status == CONIC_OK; c++) {
     status = pack_cloud(all->tree, hand, &j->children[c], group, all->is_leaf, &j->bytes[c], &j->n_bytes[c]);
@@ -146,10 +147,10 @@ static conic_status pack_children(const joinings *all, const tree_hand *hand, jo
 }
 
 static void join_clouds(void *data, size_t i_item, int i_thread) {
-  const joinings *all = data;
+  const cloud_joinings *all = data;
   const conic_levels_tree *tree = all->tree;
   const tree_hand *hand = &tree->hands[i_thread];
-  joining *j = &all->list[i_item];
+  cloud_joining *j = &all->list[i_item];
   join_room room;
   size_t n = 0, n_groups = 0;
   for (size_t c = 0; c < j->n_children; c++)
@@ -185,7 +186,7 @@ static conic_status write_cloud(conic_levels_tree *tree, tree_level *level, cons
 }
 
 /* Writes clouds that are joined, and drops them; hands over what was made of them. */
-static conic_status take_joining(conic_levels_tree *tree, tree_level *level, joining *j) {
+static conic_status take_joining(conic_levels_tree *tree, tree_level *level, cloud_joining *j) {
   conic_status status = j->status;
   for (size_t c = 0; c < j->n_children; c++) {
     if (status == CONIC_OK)
@@ -207,7 +208,7 @@ static conic_status raise_level(conic_levels_tree *tree, tree_level *level);
 /* Takes what is above a level's waiting clouds up. */
 static conic_status join_waiting(conic_levels_tree *tree, tree_level *level) {
   const size_t n = (level->n_waiting + CONIC_LEVELS_CHILDREN - 1) / CONIC_LEVELS_CHILDREN;
-  joinings all = {tree, conic_memory_allocate_zeroed(tree->context, n, sizeof *all.list), level == tree->levels};
+  cloud_joinings all = {tree, conic_memory_allocate_zeroed(tree->context, n, sizeof *all.list), level == tree->levels};
   conic_status status = all.list ? CONIC_OK : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK && !level[1].waiting)
     status = conic_memory_allocate_these(tree->context,

@@ -105,8 +105,8 @@ static conic_status scan_leaves(const fitter *f, size_t begin, size_t end, const
 }
 
 /* Widens the reach by the dots among the leaves. A dot is a ball to its node, for it faces every camera, and it leans
- * until it is twice as long in depth, which only the sphere has to hold. No cone of normals holds those of a dot: one of
- * half a turn keeps its node from being culled, and from counting for less where it is seen from its side. */
+ * until it is twice as long in depth, which only the sphere has to hold. No cone of normals holds those of a dot: one
+ * of half a turn keeps its node from being culled, and from counting for less where it is seen from its side. */
 static void add_dots(const conic_octree *octree, size_t begin, size_t end, const conic_node_frame *frame,
                      conic_leaf_reach *reach) {
   const conic_splats *leaves = &octree->leaves;
@@ -134,14 +134,10 @@ void conic_moments_facing(const conic_moments *moments, double normal[3]) {
   memcpy(normal, vectors[2], 3 * sizeof *normal);
 }
 
-static double quadratic(const double m[6], const double a[3], const double b[3]) {
-  return a[0] * (m[0] * b[0] + m[1] * b[1] + m[2] * b[2]) + a[1] * (m[1] * b[0] + m[3] * b[1] + m[4] * b[2]) +
-         a[2] * (m[2] * b[0] + m[4] * b[1] + m[5] * b[2]);
-}
-
 conic_ellipse conic_moments_shape(const conic_moments *moments, const double u[3], const double v[3]) {
-  const double covariance[3] = {quadratic(moments->scatter, u, u), quadratic(moments->scatter, u, v),
-                                quadratic(moments->scatter, v, v)};
+  const double covariance[3] = {conic_quadratic_form(moments->scatter, u, u),
+                                conic_quadratic_form(moments->scatter, u, v),
+                                conic_quadratic_form(moments->scatter, v, v)};
   return conic_ellipse_shape(covariance, CONIC_LEAST_NODE_RATIO);
 }
 

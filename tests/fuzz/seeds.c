@@ -3,6 +3,7 @@
 #include "conic/accumulate.h"
 #include "core/files/finished.h"
 #include "core/image/image_common.h"
+#include "lod/blends/levels_build.h"
 #include "lod/layers/build/layers_team.h"
 #include "tests/fuzz/strips_example.h"
 #include "tests/support/layers_fixture.h"
@@ -149,6 +150,23 @@ static void seeds_branches(seed_set *set) {
   conic_context_destroy(context);
 }
 
+/* Gaussians in levels; none where this build cannot write them. */
+static void seeds_levels(seed_set *set, conic_context *context) {
+  conic_levels_statistics statistics;
+  conic_levels_builder *builder;
+  unsigned char *bytes;
+  conic_gaussians scene = gaussians_random(context, 90, 1, 0);
+  CHECK_OK(conic_levels_builder_open(context, files_path("seed.lpc"), 20, 1 << 20, &builder));
+  CHECK_OK(conic_levels_builder_append(builder, "seed", &scene));
+  if (conic_levels_builder_finish(builder, &statistics) == CONIC_OK) {
+    const size_t n_bytes = files_read(files_path("seed.lpc"), &bytes);
+    seeds_add(set, "levels", "lpc", 0, bytes, n_bytes);
+    free(bytes);
+    CHECK(unlink(files_path("seed.lpc")) == 0);
+  }
+  conic_gaussians_release(context, &scene);
+}
+
 int main(int argc, char **argv) {
   if (argc != 2) {
     fprintf(stderr, "usage: %s FOLDER\n", argv[0]);
@@ -164,6 +182,7 @@ int main(int argc, char **argv) {
   seeds_sums(set, context);
   seeds_strips(set, context);
   seeds_branches(set);
+  seeds_levels(set, context);
   seeds_text(set, "camera_path", "keys",
              "{\"up\": [0, 1, 0], \"keys\": [{\"time\": 0, \"place\": [0, 1, 5], \"target\": [0, 0, 0], \"fov\": 50}, "
              "{\"time\": 1.5, \"place\": [3, 1, 4], \"roll\": -10}, {\"time\": 2, \"target\": [1, 0, 0]}]}");

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/base/byte_order.h"
+#include "lod/blends/levels_format.h"
 #include "lod/hybrid/model/hybrid_chunks.h"
 #include "lod/hybrid/model/hybrid_layout.h"
 #include "lod/layers/format/layers_format.h"
@@ -26,6 +27,23 @@ static inline void mend_layers(unsigned char *bytes, size_t n_bytes) {
       conic_store_64(entry + ENTRY_SUM, conic_checksum(bytes + offset, (size_t)n));
   }
   conic_store_64(bytes + INDEX_SUM, conic_checksum(index, (size_t)(table + n_clouds * CONIC_LAYERS_ENTRY_BYTES)));
+  conic_store_64(bytes + SUM, conic_checksum(bytes, SUM));
+}
+
+/* Of a .lpc of Gaussians. */
+static inline void mend_levels(unsigned char *bytes, size_t n_bytes) {
+  enum { INDEX_AT = 136, INDEX_SUM = 144, SUM = CONIC_FILE_HEADER_BYTES - 8, ENTRY_SUM = 8, ENTRY_SIZE = 16 };
+  if (n_bytes < CONIC_FILE_HEADER_BYTES)
+    return;
+  const uint64_t index = conic_load_64(bytes + INDEX_AT);
+  if (index <= n_bytes) {
+    for (size_t at = (size_t)index; at + CONIC_LEVELS_ENTRY_BYTES <= n_bytes; at += CONIC_LEVELS_ENTRY_BYTES) {
+      const uint64_t offset = conic_load_64(bytes + at), n = conic_load_32(bytes + at + ENTRY_SIZE);
+      if (offset <= n_bytes && n <= n_bytes - offset)
+        conic_store_64(bytes + at + ENTRY_SUM, conic_checksum(bytes + offset, (size_t)n));
+    }
+    conic_store_64(bytes + INDEX_SUM, conic_checksum(bytes + index, (size_t)(n_bytes - index)));
+  }
   conic_store_64(bytes + SUM, conic_checksum(bytes, SUM));
 }
 

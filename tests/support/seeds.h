@@ -15,7 +15,7 @@
 
 typedef struct seed {
   const char *target; /* the fuzz target that reads it: ply, obj, mtl, las, pcd, xyz, camera, colmap, pfm, exr, png,
-                         cot, lpc, chy, gaussians, copc, ept, potree */
+                         cot, lpc, levels, chy, gaussians, copc, ept, potree */
   char name[32];      /* of the file */
   unsigned char *bytes;
   size_t n_bytes;

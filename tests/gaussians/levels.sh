@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# Gaussian scenes in levels on the command line: built without a word of how, drawn to the bit of the source or by less,
+# and refused by name where they cannot be what is asked for.
+set -uo pipefail
+# shellcheck source=tests/support/program.bash
+source "$1/tests/support/program.bash"
+
+if ! "$conic" --version | grep '^In this build:' | grep -q zstd; then
+  echo "skipped: this build has no zstd"
+  exit 77
+fi
+
+number() { # KEY FILE: of gaussian_levels
+  sed -nE "/gaussian_levels/,/}/s/^ *\"$1\": ([^,]*),?$/\1/p" "$2" | head -n 1
+}
+
+run 0 make gaussians -n 3000 --degree 1 -o balls.ply
+run 0 layer balls.ply -o balls.lpc --cloud-size 256
+run 0 layer balls.ply -o again.lpc --cloud-size 256 --payload gaussians --threads 3 --memory 16
+cmp -s balls.lpc again.lpc || fail "threads or memory change the file"
+run 0 info balls.lpc --check
+grep -q '^gaussians .*3000, 3D, harmonics of degree 1' out || fail "info: $(cat out)"
+for profile in exact gsplat-1.6; do
+  run 0 render balls.ply --profile $profile --size 96x96 -o source.pfm
+  run 0 render balls.lpc --profile $profile --size 96x96 -o whole.pfm --json whole.json
+  cmp -s source.pfm whole.pfm || fail "$profile: drawn whole it is not the source's picture"
+done
+run 0 render balls.lpc --profile exact --size 96x96 --budget 700 -o few.pfm --json few.json
+(($(number gaussians few.json) <= 700 && $(number gaussians_merged few.json) > 0)) || fail "--budget"
+run 0 render balls.lpc --profile exact --size 96x96 --error 2 -o coarse.pfm --threads 3
+run 0 render again.lpc --profile exact --size 96x96 --error 2 -o other.pfm --threads 1
+cmp -s coarse.pfm other.pfm || fail "threads change a bit"
+run 0 render balls.lpc balls.ply --profile exact --size 64x64 -o both.pfm
+
+run 0 make sphere -n 100 -o sphere.ply
+run 2 layer balls.ply sphere.ply -o no.lpc
+grep -q 'payload plain' err || fail "mixed inputs: $(cat err)"
+run 2 layer balls.ply -o no.lpc --quantum 1
+run 2 layer balls.ply --append -o balls.lpc
+run 3 cut balls.lpc --box -1,-1,1,1 -o no.ply
+grep -q 'a .lpc of Gaussians' err || fail "cut: $(cat err)"
+run 3 render balls.lpc --profile surface -o no.png
+run 0 layer balls.ply -o splats.lpc --payload plain
+run 0 info splats.lpc
+grep -q '^samples' out || fail "--payload plain keeps no splats"
+head -c 3000 balls.lpc > no.lpc
+run 3 render no.lpc --profile exact -o no.png
+[[ $failures -eq 0 ]]
