@@ -1522,7 +1522,7 @@ def layers(
     quantum: Optional[Union[str, float, Sequence[float]]] = None,
     cutoff: Optional[float] = None,
     k: Optional[int] = None,
-    payload: Optional[Literal["plain", "full"]] = None,
+    payload: Optional[Literal["plain", "full", "gaussians"]] = None,
     keep: Optional[PathLike] = None,
     append: Optional[bool] = None,
     resumable: Optional[bool] = None,
@@ -1548,8 +1548,9 @@ def layers(
         --payload full]
     cutoff: the --cutoff of the pictures to come [1.5]
     k: neighbours that raw points' normals are estimated from, 6 to 64 [20]
-    payload: what of a splat is kept: plain, its place, size, direction and colour, and that it is a dot; or
-        full, also ellipses, opacities and clip lines, and all of it finely [plain]
+    payload: what of a splat is kept: plain, its place, size, direction and colour, and that it is a dot; full,
+        also ellipses, opacities and clip lines, and all of it finely; gaussians, of Gaussian scenes all, in
+        levels of merged ones [gaussians of such scenes, else plain]
     keep: which values of the points are kept, for --color-by and --where: intensity,gps_time or all [none]
     append: add to the OUT.lpc that there is; its samples stay where they are
     resumable: note in OUT.branches what is finished, so that --resume can go on after any end
