@@ -248,14 +248,16 @@ static conic_status begin_gaussian_windows(conic_source_windows *w) {
   if ((long)w->camera.width * w->samples > 65535 || (long)w->camera.height * w->samples > 65535)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: so many samples make more than 65535 a side",
                       w->source->name);
+  conic_status status = g->choose ? g->choose(w->source, &w->camera) : CONIC_OK;
   w->step = CONIC_GAUSSIAN_TILE;
   w->band_rows = w->camera.height;
   g->options.isa = w->render.isa;
   g->options.device = w->renderer ? conic_opencl_gaussian_device(w->renderer) : NULL;
   for (int c = 0; c < 3; c++)
     g->options.background[c] = w->render.has_background && !g->surfaces ? w->render.background[c] : 0.0f;
-  conic_status status = conic_gaussian_picture_begin(context, &g->gaussians, &fine, &g->options,
-                                                     w->planes >> CONIC_PLANE_NORMAL & 1, &picture);
+  if (status == CONIC_OK)
+    status = conic_gaussian_picture_begin(context, &g->gaussians, &fine, &g->options,
+                                          w->planes >> CONIC_PLANE_NORMAL & 1, &picture);
   w->own = picture;
   return status;
 }

@@ -17,6 +17,8 @@ typedef struct conic_gaussians_source {
   int is_lent;               /* the Gaussians are a caller's */
   conic_gaussian_options options;
   conic_gaussian_statistics drawn;
+  /* Makes the Gaussians those of a picture; null: they are all that there is. */
+  conic_status (*choose)(conic_source *source, const conic_camera *camera);
   conic_source *surfaces; /* of the other inputs; null: there are none */
   conic_among_input *inputs;
   size_t n_inputs; /* 0: there is one */

@@ -1,8 +1,6 @@
 /* A Gaussian scene in levels: each picture takes what it shows of it, and that is drawn as any scene is. */
 #include <inttypes.h>
 
-#include "core/files/file.h"
-#include "gaussians/scene/gaussian_set.h"
 #include "lod/blends/levels_read.h"
 #include "source/together/gaussians_source.h"
 
@@ -34,11 +32,17 @@ static conic_status choose_levels(levels_source *s, const conic_levels_wish *wis
   return status;
 }
 
+static conic_status choose_for_picture(conic_source *source, const conic_camera *camera) {
+  const conic_levels_wish wish = {.camera = *camera, .error = source->view.error_px, .budget = source->view.budget};
+  return choose_levels((levels_source *)source, &wish);
+}
+
 static conic_status open_levels(conic_source *source, const char *const *paths, size_t n_paths,
                                 const conic_source_options *options) {
   levels_source *s = (levels_source *)source;
   (void)n_paths;
   s->g.options = *options->gaussians;
+  s->g.choose = choose_for_picture;
   conic_status status = conic_levels_open(source->context, paths[0], options->access, &s->levels);
   if (status != CONIC_OK)
     return status;
@@ -58,44 +62,6 @@ static void close_levels(conic_source *source) {
   conic_levels_close(((levels_source *)source)->levels);
   conic_gaussians_source_close(source);
 }
-
-static conic_status choose_for_picture(conic_source *source, const conic_camera *camera,
-                                       const conic_source_view *view) {
-  const conic_levels_wish wish = {.camera = *camera, .error = view->error_px, .budget = view->budget};
-  return choose_levels((levels_source *)source, &wish);
-}
-
-static conic_status draw_levels(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
-                                const conic_render_options *render, const conic_source_view *view, conic_image *image,
-                                conic_render_statistics *statistics) {
-  conic_status status = choose_for_picture(source, camera, view);
-  return status == CONIC_OK ? conic_gaussians_source_draw(source, renderer, camera, render, view, image, statistics)
-                            : status;
-}
-
-static conic_status begin_levels_windows(conic_source_windows *windows) {
-  conic_status status = choose_for_picture(windows->source, &windows->camera, &windows->source->view);
-  return status == CONIC_OK ? conic_gaussians_windowing.begin(windows) : status;
-}
-
-static void end_levels_windows(conic_source_windows *windows) {
-  conic_gaussians_windowing.end(windows);
-}
-
-static conic_status draw_levels_window(conic_source_windows *windows, const conic_window *window, conic_image *image,
-                                       conic_render_statistics *statistics) {
-  return conic_gaussians_windowing.draw(windows, window, image, statistics);
-}
-
-static void weigh_levels_windows(const conic_source_windows *windows, const conic_window *list, size_t n,
-                                 double *weights) {
-  conic_gaussians_windowing.weigh(windows, list, n, weights);
-}
-
-static const conic_source_windowing windowing_of_levels = {.begin = begin_levels_windows,
-                                                           .end = end_levels_windows,
-                                                           .draw = draw_levels_window,
-                                                           .weigh = weigh_levels_windows};
 
 static void tell_levels_rest(const conic_source *source, conic_facts *facts) {
   const levels_source *s = (const levels_source *)source;
@@ -143,8 +109,8 @@ const conic_source_kind conic_source_kind_levels = {
     .takes = takes_levels,
     .open = open_levels,
     .close = close_levels,
-    .draw = draw_levels,
-    .windowing = &windowing_of_levels,
+    .draw = conic_gaussians_source_draw,
+    .windowing = &conic_gaussians_windowing,
     .tell_rest = tell_levels_rest,
     .is_file = conic_levels_is_file,
     .name = "lpc",
