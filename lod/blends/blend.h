@@ -37,9 +37,6 @@ void conic_blend_take(const float *row, int sh_degree, conic_blend *blend);
 /* Makes one row of n, by their opacities times their areas. */
 void conic_blend_merge(const conic_blend *parts, size_t n, int sh_degree, float *row);
 
-/* What two would lose if they were one, about: for choosing among pairs. */
-double conic_blend_cost(const conic_blend *a, const conic_blend *b);
-
 /* Parts n into groups, so that there are about n_wanted, those whose merging changes least first. group[i] is the
  * number of i's, which are counted from 0 in the order of their first parts; *n_groups is how many there are. Errors:
  * MEMORY. */

@@ -63,7 +63,8 @@ static double cost_from(const conic_blend *a, const conic_blend *b, int axis) {
   return sqrt(fmax(square, 0.0) * root);
 }
 
-double conic_blend_cost(const conic_blend *a, const conic_blend *b) {
+/* What two would lose if they were one, about. */
+static double find_cost(const conic_blend *a, const conic_blend *b) {
   return cost_from(a, b, 0) + cost_from(a, b, 1) + cost_from(a, b, 2);
 }
 
@@ -112,7 +113,7 @@ static void enqueue(blend_merging *m, uint32_t i) {
     k->costs[n++] = known;
     if (k->n_parts + m->knots[other].n_parts > CONIC_BLEND_MOST_PARTS)
       continue;
-    k->costs[n - 1] = known < 0.0 ? conic_blend_cost(&m->now[i], &m->now[other]) : known;
+    k->costs[n - 1] = known < 0.0 ? find_cost(&m->now[i], &m->now[other]) : known;
     if (k->costs[n - 1] < least) {
       least = k->costs[n - 1];
       k->best = other;

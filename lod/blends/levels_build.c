@@ -291,23 +291,13 @@ static conic_status add_by_parts(conic_levels_builder *b, size_t n) {
   return status;
 }
 
-static conic_status add_whole(conic_levels_builder *b) {
-  const size_t n = (size_t)b->header.n, n_bytes = b->n_words * sizeof(float);
-  float *words = conic_memory_allocate(b->context, n, n_bytes);
-  conic_status status = words ? conic_spool_read(&b->rows, 0, words, n * n_bytes) : CONIC_ERROR_MEMORY;
-  if (status == CONIC_OK)
-    status = add_in_order(b, words, n, 0);
-  conic_memory_release(b->context, words);
-  return status;
-}
-
 /* --- the file --- */
 
 static conic_status write_levels(conic_levels_builder *b) {
   unsigned char bytes[CONIC_FILE_HEADER_BYTES] = {0};
   FILE *to = conic_output_stream(b->output);
   conic_levels_header *h = &b->header;
-  const uint64_t n_bytes = h->n * b->n_words * sizeof(float), a_part = b->memory_bytes / 4;
+  const uint64_t n_bytes = h->n * b->n_words * sizeof(float);
   const uint64_t a_cloud = (uint64_t)h->cloud_size * 3 * b->n_words * sizeof(float);
   const uint64_t n_at_once = AT_ONCE_BYTES / (a_cloud * CONIC_LEVELS_CHILDREN * CONIC_LEVELS_CHILDREN);
   const double extent = fmax(h->high[0] - h->low[0], fmax(h->high[1] - h->low[1], h->high[2] - h->low[2]));
@@ -320,7 +310,7 @@ static conic_status write_levels(conic_levels_builder *b) {
                                                                   : (size_t)n_at_once,
                                                  to, b->path, &b->tree);
   if (status == CONIC_OK)
-    status = n_bytes <= a_part ? add_whole(b) : add_by_parts(b, (size_t)(n_bytes / a_part + 1));
+    status = add_by_parts(b, (size_t)(n_bytes / (b->memory_bytes / 4) + 1));
   if (status == CONIC_OK)
     status = conic_levels_tree_end(b->tree, h);
   conic_levels_write_header(h, bytes);
