@@ -57,53 +57,66 @@ static double depth_of(double opacity) {
   return -conic_logarithm(1.0 - fmin(opacity, 0.99));
 }
 
-void conic_blend_merge(const conic_blend *parts, size_t n, int sh_degree, float *row) {
-  const size_t n_harmonics = conic_harmonics_of_degree(sh_degree);
-  double weight = 0.0, mean[3] = {0.0, 0.0, 0.0}, covariance[6] = {0.0}, depth = 0.0;
-  double harmonics[CONIC_MOST_HARMONICS] = {0.0}, s2[3], axes[3][3], q[4];
+static double weight_of(const conic_blend *part) {
+  return part->is_drawn ? (double)part->row[CONIC_BLEND_OPACITY] * part->area + 1e-30 : 0.0;
+}
+
+/* Of the parts about their mean, with the parts' own. */
+static void find_covariance(const conic_blend *parts, size_t n, const double mean[3], double weight,
+                            double covariance[6]) {
+  memset(covariance, 0, 6 * sizeof *covariance);
   for (size_t i = 0; i < n; i++) {
-    const float *from = parts[i].row;
-    const double w = (double)from[CONIC_BLEND_OPACITY] * parts[i].area + 1e-30;
-    if (!parts[i].is_drawn)
-      continue;
-    weight += w;
-    depth += depth_of((double)from[CONIC_BLEND_OPACITY]) * parts[i].area;
-    for (int axis = 0; axis < 3; axis++)
-      mean[axis] += w * parts[i].mean[axis];
-    for (size_t k = 0; k < n_harmonics; k++)
-      harmonics[k] += w * (double)from[CONIC_BLEND_HARMONICS + k];
-  }
-  if (weight == 0.0) {
-    memcpy(row, parts[0].row, (CONIC_BLEND_HARMONICS + n_harmonics) * sizeof *row);
-    return;
-  }
-  for (int axis = 0; axis < 3; axis++)
-    mean[axis] /= weight;
-  for (size_t i = 0; i < n; i++) {
-    const double w = ((double)parts[i].row[CONIC_BLEND_OPACITY] * parts[i].area + 1e-30) / weight;
+    const double w = weight_of(&parts[i]) / weight;
     double d[3];
-    if (!parts[i].is_drawn)
-      continue;
     conic_subtract(parts[i].mean, mean, d);
     const double scaled[3] = {w * d[0], w * d[1], w * d[2]};
     conic_add_outer(covariance, d, scaled);
     for (int k = 0; k < 6; k++)
       covariance[k] += w * parts[i].covariance[k];
   }
+}
+
+/* Deviations and rotation; returns the area. */
+static double put_shape(const double covariance[6], float *row) {
+  double s2[3], axes[3][3], rows[3][3], q[4];
   conic_eigen3(covariance, s2, axes);
-  for (int k = 0; k < 3; k++)
-    s2[k] = fmax(s2[k], 0.0);
   conic_cross(axes[0], axes[1], axes[2]);
-  const double rotation[3][3] = {
-      {axes[0][0], axes[1][0], axes[2][0]}, {axes[0][1], axes[1][1], axes[2][1]}, {axes[0][2], axes[1][2], axes[2][2]}};
-  conic_gaussians_find_quaternion(rotation, q);
   for (int k = 0; k < 3; k++) {
-    row[k] = (float)mean[k];
+    s2[k] = fmax(s2[k], 0.0);
     row[CONIC_BLEND_SCALE + k] = rounded(sqrt(s2[k]));
+    for (int axis = 0; axis < 3; axis++)
+      rows[axis][k] = axes[k][axis];
   }
+  conic_gaussians_find_quaternion((const double(*)[3])rows, q);
   for (int k = 0; k < 4; k++)
     row[CONIC_BLEND_ROTATION + k] = rounded(q[k]);
-  const double area = mean_area(s2);
+  return mean_area(s2);
+}
+
+void conic_blend_merge(const conic_blend *parts, size_t n, int sh_degree, float *row) {
+  const size_t n_harmonics = conic_harmonics_of_degree(sh_degree);
+  double weight = 0.0, depth = 0.0, mean[3] = {0.0, 0.0, 0.0}, harmonics[CONIC_MOST_HARMONICS] = {0.0}, covariance[6];
+  for (size_t i = 0; i < n; i++) {
+    const double w = weight_of(&parts[i]);
+    if (!parts[i].is_drawn)
+      continue;
+    weight += w;
+    depth += depth_of((double)parts[i].row[CONIC_BLEND_OPACITY]) * parts[i].area;
+    for (int axis = 0; axis < 3; axis++)
+      mean[axis] += w * parts[i].mean[axis];
+    for (size_t k = 0; k < n_harmonics; k++)
+      harmonics[k] += w * (double)parts[i].row[CONIC_BLEND_HARMONICS + k];
+  }
+  if (weight == 0.0) { /* no picture shows them, nor this */
+    memcpy(row, parts[0].row, (CONIC_BLEND_HARMONICS + n_harmonics) * sizeof *row);
+    return;
+  }
+  for (int axis = 0; axis < 3; axis++) {
+    mean[axis] /= weight;
+    row[axis] = (float)mean[axis];
+  }
+  find_covariance(parts, n, mean, weight, covariance);
+  const double area = put_shape(covariance, row);
   row[CONIC_BLEND_OPACITY] = area > 0.0 ? rounded(1.0 - conic_gaussian_exp(-depth / area)) : 0.0f;
   for (size_t k = 0; k < n_harmonics; k++)
     row[CONIC_BLEND_HARMONICS + k] = rounded(harmonics[k] / weight);

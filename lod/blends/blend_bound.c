@@ -8,7 +8,7 @@
 /* Directions of sight, from all octants and along the axes; places a side of the square that is looked at, which is so
  * many deviations wide; and what is added to what is found, as between directions and places there may be more. */
 enum { DIRECTIONS = 7, SIDE = 9 };
-static const double half_width = 3.3, safety = 1.25;
+static const double half_width = 3.3, step = 6.6 / SIDE, safety = 1.25;
 
 /* A Gaussian on the screen: e^-(xx·x² + 2·xy·x·y + yy·y²)/2 about its mean. */
 typedef struct trace {
@@ -98,49 +98,48 @@ static void order_by_depth(trace *parts, size_t n) {
     }
 }
 
-/* Looks from one direction, and raises what was found from others. */
-static void look_from(const screen *s, const conic_blend *parts, size_t n, conic_blend *whole) {
-  trace own, traces[CONIC_BLEND_MOST_PARTS];
-  double root, sum = 0.0;
-  float most = 0.0f;
-  own = trace_of(s, whole, whole->mean, &root);
-  for (size_t i = 0; i < n; i++) {
-    double unused;
-    traces[i] = trace_of(s, &parts[i], whole->mean, &unused);
-    for (int c = 0; c < 3; c++)
-      whole->ceiling = greater(whole->ceiling, traces[i].color[c]);
-  }
-  for (int c = 0; c < 3; c++)
-    whole->ceiling = greater(whole->ceiling, own.color[c] * own.opacity);
-  order_by_depth(traces, n);
-  /* a square of the ellipse's own axes: L of Σ = L·Lᵀ turns the unit square into them */
-  const double det = root * root, xx = (double)own.yy * det, xy = -(double)own.xy * det;
-  const double l_xx = sqrt(xx), l_yx = xy / l_xx, l_yy = root / l_xx, step = 2.0 * half_width / SIDE;
-  seen_places at = {.n = 0};
+/* A square of the whole's own axes (L of Σ = L·Lᵀ turns the unit square into them), and the parts' middles. */
+static void lay_out(const trace *whole, double root, const trace *parts, size_t n, seen_places *at) {
+  const double xx = (double)whole->yy * root * root, xy = -(double)whole->xy * root * root;
+  const double l_xx = sqrt(xx), l_yx = xy / l_xx, l_yy = root / l_xx;
+  memset(at, 0, sizeof *at);
   for (int row = 0; row < SIDE; row++)
     for (int column = 0; column < SIDE; column++) {
       const double u = (column + 0.5) * step - half_width, v = (row + 0.5) * step - half_width;
-      at.x[at.n] = (float)(l_xx * u);
-      at.y[at.n++] = (float)(l_yx * u + l_yy * v);
+      at->x[at->n] = (float)(l_xx * u);
+      at->y[at->n++] = (float)(l_yx * u + l_yy * v);
     }
   for (size_t i = 0; i < n; i++) {
-    at.x[at.n] = (float)traces[i].x;
-    at.y[at.n++] = (float)traces[i].y;
+    at->x[at->n] = (float)parts[i].x;
+    at->y[at->n++] = (float)parts[i].y;
   }
-  seen_places alone = at;
   for (size_t i = 0; i < MOST_PLACES; i++)
-    at.left[i] = alone.left[i] = 1.0f;
+    at->left[i] = 1.0f;
+}
+
+/* Looks from one direction, and raises what was found from others. */
+static void look_from(const screen *s, const conic_blend *parts, size_t n, conic_blend *whole) {
+  trace traces[CONIC_BLEND_MOST_PARTS];
+  seen_places at, alone;
+  double root, unused, sum = 0.0;
+  const trace own = trace_of(s, whole, whole->mean, &root);
+  for (size_t i = 0; i < n; i++)
+    traces[i] = trace_of(s, &parts[i], whole->mean, &unused);
+  order_by_depth(traces, n);
+  lay_out(&own, root, traces, n, &at);
+  alone = at;
   lay_down(&own, &alone);
   for (size_t i = 0; i < n; i++)
     lay_down(&traces[i], &at);
   for (size_t i = 0; i < at.n; i++) {
     float change = fabsf(at.left[i] - alone.left[i]);
-    for (int c = 0; c < 3; c++)
+    for (int c = 0; c < 3; c++) {
       change = greater(change, fabsf(at.sum[c][i] - alone.sum[c][i]));
+      whole->ceiling = greater(whole->ceiling, greater(at.sum[c][i], alone.sum[c][i]));
+    }
     sum += i < SIDE * SIDE ? (double)change : 0.0;
-    most = greater(most, change);
+    whole->bound.most = greater(whole->bound.most, change);
   }
-  whole->bound.most = greater(whole->bound.most, most);
   whole->bound.light = greater(whole->bound.light, (float)(sum * step * step * root));
 }
 
