@@ -16,9 +16,10 @@ enum { CONIC_BLEND_MOST_PARTS = 12 };
 
 /* By how much what stands for some Gaussians changes a picture, beside the Gaussians themselves. */
 typedef struct conic_blend_bound {
-  float light; /* the change of a colour or of the opacity, times the area where it is, in square world units */
-  float most;  /* the greatest change at one place */
-  float reach; /* all of the Gaussians lie so far from the mean at most */
+  float light;   /* the change of a colour or of the opacity, times the area where it is, in square world units */
+  float most;    /* the greatest change at one place */
+  float reach;   /* all of the Gaussians lie so far from the mean at most */
+  float ceiling; /* no colour of them, from the directions that are tried, is above it; nor is any change */
 } conic_blend_bound;
 
 typedef struct conic_blend {
@@ -27,8 +28,7 @@ typedef struct conic_blend {
   double area;                   /* about the mean of its projections' |Σ|^½ over directions */
   double color[3];               /* of degree 0 */
   conic_blend_bound bound;
-  float ceiling; /* no colour of what it stands for is above, seen from the directions that are tried */
-  int is_drawn;  /* 0: a number of it is none, and no picture shows it */
+  int is_drawn; /* 0: a number of it is none, and no picture shows it */
 } conic_blend;
 
 /* Of a Gaussian as it came. */
@@ -43,5 +43,5 @@ void conic_blend_merge(const conic_blend *parts, size_t n, int sh_degree, float 
 conic_status conic_blend_group(conic_context *context, const conic_blend *blends, size_t n, size_t n_wanted,
                                uint32_t *group, size_t *n_groups);
 
-/* Fills in the bound and the ceiling of what stands for n parts, which have theirs. */
+/* Fills in the bound of what stands for n parts, which have theirs. */
 void conic_blend_find_bound(const conic_blend *parts, size_t n, int sh_degree, conic_blend *whole);

@@ -135,7 +135,7 @@ static void look_from(const screen *s, const conic_blend *parts, size_t n, conic
     float change = fabsf(at.left[i] - alone.left[i]);
     for (int c = 0; c < 3; c++) {
       change = greater(change, fabsf(at.sum[c][i] - alone.sum[c][i]));
-      whole->ceiling = greater(whole->ceiling, greater(at.sum[c][i], alone.sum[c][i]));
+      whole->bound.ceiling = greater(whole->bound.ceiling, greater(at.sum[c][i], alone.sum[c][i]));
     }
     sum += i < SIDE * SIDE ? (double)change : 0.0;
     whole->bound.most = greater(whole->bound.most, change);
@@ -151,15 +151,14 @@ static float rounded_up(double value) {
 
 void conic_blend_find_bound(const conic_blend *parts, size_t n, int sh_degree, conic_blend *whole) {
   double light = 0.0, most = 0.0, reach = (double)whole->bound.reach;
-  whole->bound = (conic_blend_bound){0.0f, 0.0f, 0.0f};
-  whole->ceiling = 1.0f;
+  whole->bound = (conic_blend_bound){.ceiling = 1.0f};
   for (size_t i = 0; i < n; i++) {
     double d[3];
     conic_subtract(parts[i].mean, whole->mean, d);
     light += (double)parts[i].bound.light;
     most += (double)parts[i].bound.most;
     reach = fmax(reach, conic_length(d) + (double)parts[i].bound.reach);
-    whole->ceiling = greater(whole->ceiling, parts[i].ceiling);
+    whole->bound.ceiling = greater(whole->bound.ceiling, parts[i].bound.ceiling);
   }
   if (n > 1 && whole->is_drawn)
     for (int i = 0; i < DIRECTIONS; i++) {
@@ -167,6 +166,6 @@ void conic_blend_find_bound(const conic_blend *parts, size_t n, int sh_degree, c
       look_from(&s, parts, n, whole);
     }
   whole->bound.light = rounded_up(safety * (double)whole->bound.light + light);
-  whole->bound.most = rounded_up(fmin(safety * (double)whole->bound.most + most, (double)whole->ceiling));
+  whole->bound.most = rounded_up(fmin(safety * (double)whole->bound.most + most, (double)whole->bound.ceiling));
   whole->bound.reach = rounded_up(reach);
 }

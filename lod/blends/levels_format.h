@@ -10,7 +10,7 @@ enum {
   CONIC_LEVELS_ENTRY_BYTES = 24,
   CONIC_LEVELS_CHILDREN = 4,       /* of a cloud */
   CONIC_LEVELS_MOST_CLOUD = 16384, /* that may be asked for */
-  CONIC_LEVELS_MOST_DEPTH = 16
+  CONIC_LEVELS_MOST_DEPTH = 18
 };
 
 /* Flags. */

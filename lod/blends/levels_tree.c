@@ -43,11 +43,11 @@ typedef struct cloud_joinings {
 conic_status conic_levels_cloud_allocate(conic_context *context, size_t n, size_t n_row, conic_levels_cloud *cloud) {
   cloud->n = n;
   return conic_memory_allocate_these(context, CONIC_ROOM(cloud->rows, n * n_row), CONIC_ROOM(cloud->bounds, n),
-                                     CONIC_ROOM(cloud->ceilings, n), CONIC_ROOM(cloud->numbers, n));
+                                     CONIC_ROOM(cloud->numbers, n));
 }
 
 static void release_cloud(conic_context *context, conic_levels_cloud *cloud) {
-  conic_memory_release_these(context, cloud->rows, cloud->bounds, cloud->ceilings, cloud->numbers);
+  conic_memory_release_these(context, cloud->rows, cloud->bounds, cloud->numbers);
   memset(cloud, 0, sizeof *cloud);
 }
 
@@ -91,10 +91,8 @@ static void take_children(const conic_levels_tree *tree, const cloud_joining *j,
     for (size_t i = 0; i < j->children[c].n; i++, at++) {
       const conic_levels_cloud *cloud = &j->children[c];
       conic_blend *b = &room->blends[at];
-      const float ceiling = cloud->ceilings[i];
       conic_blend_take(cloud->rows + i * tree->n_row, (int)tree->header.sh_degree, b);
       b->bound = cloud->bounds[i];
-      b->ceiling = ceiling;
       room->child[at] = (uint32_t)c;
     }
 }
@@ -132,7 +130,6 @@ static void merge_groups(const conic_levels_tree *tree, cloud_joining *j, const 
     conic_blend_take(row, degree, &whole);
     conic_blend_find_bound(room->sorted, n, degree, &whole);
     j->made.bounds[g] = whole.bound;
-    j->made.ceilings[g] = whole.ceiling;
   }
 }
 
@@ -283,7 +280,6 @@ conic_status conic_levels_tree_add(conic_levels_tree *tree, conic_levels_cloud *
     conic_blend blend;
     conic_blend_take(cloud->rows + i * tree->n_row, (int)tree->header.sh_degree, &blend);
     cloud->bounds[i] = blend.bound;
-    cloud->ceilings[i] = blend.ceiling;
   }
   leaves->waiting[leaves->n_waiting++] = *cloud;
   memset(cloud, 0, sizeof *cloud);

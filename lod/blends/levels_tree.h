@@ -8,7 +8,6 @@ typedef struct conic_levels_cloud {
   size_t n;
   float *rows;
   conic_blend_bound *bounds;
-  float *ceilings;
   uint32_t *numbers; /* of Gaussians as they came; of what is merged, which children have parts */
 } conic_levels_cloud;
 
