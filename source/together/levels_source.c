@@ -24,7 +24,7 @@ static conic_status choose_levels(levels_source *s, const conic_levels_wish *wis
   conic_gaussians_release(s->g.base.context, set);
   conic_status status = conic_levels_choose(s->levels, wish, set, &s->cut);
   s->g.base.choice = (conic_source_choice){.error_px = s->cut.error, .is_all = s->cut.is_all};
-  if (status == CONIC_OK && s->cut.is_short)
+  if (status == CONIC_OK && s->cut.is_short && wish->error == 0.0) /* else the program says so */
     conic_log(s->g.base.context, CONIC_LOG_WARNING,
               "%s: drawn by an error of %.3g, as no more than %" PRIu64
               " Gaussians fit into the memory that it may take",
