@@ -317,7 +317,7 @@ static const conic_shot_row reading_list[] = {
     {CONIC_ROW_LEFT_OUT, AT(cache), .meaning = "what is kept is what would be built"},
     {CONIC_ROW_WORD, AT(colors_are), NULL, "what colours mean that are fractions of 1", colors_word},
     {CONIC_ROW_TEXT, AT(place), NULL, "where inputs stand: each its number, a colon and its matrix"},
-    {CONIC_ROW_UINT64, AT(most_raw), NULL, "no more raw points are taken; 0: all"}};
+    {CONIC_ROW_UINT64, AT(most_raw), NULL, "no more raw points are taken; 0: all", IN(0, 4294967294.0)}};
 TABLE(reading, set_reading, NULL)
 #undef S
 

@@ -70,6 +70,9 @@ static const char *find_fault(const conic_source *source, const conic_shot *shot
     return "the planes T, medianZ, inverseZ, last and doubt are of Gaussians that are composited";
   if (shot->planes & 1u << CONIC_PLANE_CLUSTER && !(abilities & CONIC_SOURCE_CLUSTERS))
     return "the plane cluster is of hybrids";
+  if (shot->planes & MOTION && (shot->camera.lens || (shot->camera.kind != CONIC_CAMERA_PERSPECTIVE &&
+                                                      shot->camera.kind != CONIC_CAMERA_ORTHOGRAPHIC)))
+    return "the plane motion is of perspective and parallel cameras without a lens that distorts";
   return NULL;
 }
 

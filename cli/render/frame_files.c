@@ -6,7 +6,6 @@
 #include "cli/render/mattes.h"
 #include "cli/scene/background_options.h"
 #include "cli/scene/surfaces_drawn.h"
-#include "cli/sheet/sheet.h"
 #include "core/coloring/color_ramp.h"
 #include "core/coloring/legend.h"
 #include "core/files/disk.h"
@@ -115,7 +114,7 @@ static conic_status show_legend(cli_session *session, cli_render_job *job, conic
     return CONIC_OK;
   }
   conic_status status = conic_source_georeference(job->source, &reference);
-  const char *length = reference.unit_m > 0.0 ? cli_unit_name(reference.unit_m) : "";
+  const char *length = reference.unit_m > 0.0 ? conic_unit_name(reference.unit_m) : "";
   if (status == CONIC_OK && job->has_legend)
     conic_legend_draw(coloring, length, image);
   if (status == CONIC_OK && job->legend_path)

@@ -9,9 +9,6 @@
 
 enum { CLI_MOST_PANELS = 24 };
 
-/* "m", "ft" … by its metres; "units" for others. */
-const char *cli_unit_name(double unit_m);
-
 typedef enum cli_panel_kind { CLI_PANEL_PLAN = 0, CLI_PANEL_FACADE = 1, CLI_PANEL_SECTION = 2 } cli_panel_kind;
 
 typedef struct cli_panel {

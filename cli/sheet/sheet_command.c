@@ -75,24 +75,14 @@ static int parse_paper(const char *text, void *value) {
   return 1;
 }
 
-static const char *const units[] = {"m", "mm", "cm", "km", "ft", "us-ft", "in", NULL};
-static const double unit_metres[] = {1.0, 1e-3, 1e-2, 1e3, 0.3048, 1200.0 / 3937.0, 0.0254};
-
 /* --- the work --- */
-
-const char *cli_unit_name(double unit_m) {
-  for (int i = 0; units[i]; i++)
-    if (fabs(unit_m / unit_metres[i] - 1.0) < 1e-9)
-      return units[i];
-  return "units";
-}
 
 /* The unit, and whether there is a north. */
 static conic_status know_world(cli_sheet_job *job) {
   conic_status status = conic_source_georeference(job->scene.source, &job->reference);
   if (!job->is_unit_given)
     job->unit_m = job->reference.unit_m > 0.0 ? job->reference.unit_m : 1.0;
-  job->unit = cli_unit_name(job->unit_m);
+  job->unit = conic_unit_name(job->unit_m);
   return status;
 }
 
@@ -261,7 +251,7 @@ static int run_sheet(cli_session *session, int argc, char **argv) {
       {"grid", CLI_NUMBER, &job.grid, "D",
        "from one coordinate at the frame to the next, in the scene's unit [as fits]", 1e-9, 1e12},
       {"unit", CLI_CHOICE, &unit, "NAME", "the scene's unit: m, mm, cm, km, ft, us-ft or in [the file's, or m]",
-       .choices = units, .is_given = &job.is_unit_given},
+       .choices = conic_unit_names, .is_given = &job.is_unit_given},
       {"north", CLI_NUMBER, &job.north_deg, "DEG",
        "where north is, clockwise from the top of the plan [0 where the file names its coordinate system, else none]",
        -360, 360, .is_given = &job.is_north_given},
@@ -277,7 +267,7 @@ static int run_sheet(cli_session *session, int argc, char **argv) {
     if (job.scene.is_memory_given && job.scene.access.memory_bytes)
       job.scene.access.memory_bytes = job.memory_bytes;
     if (job.is_unit_given)
-      job.unit_m = unit_metres[unit];
+      job.unit_m = conic_unit_metres[unit];
     job.scene.shot.planes = conic_shot_needs(&job.scene.shot, 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z);
   }
   return cli_scene_run(session, exit_code, &job.scene, make_sheet, &job);

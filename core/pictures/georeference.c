@@ -9,6 +9,16 @@
 #include "core/files/las_layout.h"
 #include "core/files/number.h"
 
+const char *const conic_unit_names[] = {"m", "mm", "cm", "km", "ft", "us-ft", "in", NULL};
+const double conic_unit_metres[] = {1.0, 1e-3, 1e-2, 1e3, 0.3048, 1200.0 / 3937.0, 0.0254};
+
+const char *conic_unit_name(double unit_m) {
+  for (int i = 0; conic_unit_names[i]; i++)
+    if (fabs(unit_m / conic_unit_metres[i] - 1.0) < 1e-9)
+      return conic_unit_names[i];
+  return "units";
+}
+
 /* GeoKeys: the kind of system (1: projected, 2: geographic), the kind of pixel (1: an area), the systems' codes, and
  * the code of the unit of lengths. */
 enum {

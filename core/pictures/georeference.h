@@ -15,6 +15,11 @@ typedef struct conic_georeference {
   int is_unknown; /* there are no keys, but the file names a system in well-known text without a code */
 } conic_georeference;
 
+/* Units of length by name, which null ends, and their metres; and the name by these, "units" for others. */
+extern const char *const conic_unit_names[8];
+extern const double conic_unit_metres[7];
+const char *conic_unit_name(double unit_m);
+
 /* A system from its code, 1 to 65535. Errors: MEMORY. */
 conic_status conic_georeference_of_epsg(conic_context *context, unsigned epsg, conic_georeference *reference);
 /* The code of the horizontal system in well-known text of either version, or in "EPSG:26910"; of text without codes
