@@ -1,4 +1,5 @@
 /* The rules of gsplat 1.6, for runner.c: a renderer as plain as numpy-renderer.py. */
+#pragma once
 
 static void harmonics(const double v[3], double Y[16]) {
   const double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]), x = v[0] / length, y = v[1] / length,
