@@ -141,7 +141,7 @@ def splat(scene, eye):
 
 def gs3d(scene, eye):
     """GaussianSplats3D, INRIAV1PlyParser.js:130-152: colours and opacities of 8 bits, cut off;
-    harmonics up to degree 2, cut off to 16 bits (SplatMesh.js:1325); SplatMesh.js:939-943: the
+    harmonics up to degree 2, cut off to 16 bits (SplatMesh.js:1065); SplatMesh.js:942-945: the
     last Gaussian of a scene keeps the first of its six covariances and loses the others."""
     sigma = covariances(scene, unit(scene["rotation"]))[-1]
     scene["scale"][-1] = np.sqrt(sigma[0, 0]), 0, 0
@@ -161,7 +161,7 @@ def playcanvas(scene, eye):
     rest = scene["sh"][:, 1:].astype(float)
     if rest.shape[1]:
         flat = rest.reshape(len(rest), -1)
-        most = np.maximum(flat[:, 0], np.abs(flat[:, 1:]).max(1))  # the first is taken with its sign (:218)
+        most = np.maximum(flat[:, 0], np.abs(flat[:, 1:]).max(1))  # the first is taken with its sign (:207)
         steps = np.array([2047, 1023, 2047])
         with np.errstate(divide="ignore", invalid="ignore"):
             codes = np.clip(np.floor((rest / most[:, None, None] * 0.5 + 0.5) * steps + 0.5), 0, steps)
@@ -190,7 +190,7 @@ def spark(scene, eye):
     with np.errstate(divide="ignore"):  # (:286-297) 8 bits of the power of two below the largest channel: more is cut off
         power = np.exp2(np.clip(np.floor(np.log2(np.abs(rest).max(2, keepdims=True))), -15, 16))
     rest = np.sign(rest) * np.floor(np.minimum(np.abs(rest) / power * 255, 255) + 0.5) / 255 * power
-    rest[:, 3:4] = rest[:, 8:] = 0  # ext_splats.rs:521 keeps the first of degree 2 from its texture, ExtSplats.ts:206 degree 3
+    rest[:, 3:4] = rest[:, 8:] = 0  # ext_splats.rs:519 loses the first of degree 2, ExtSplats.ts:209 degree 3
     scene["color"] = half(color + harmonics(rest.astype(F), directions(scene, eye)))
     scene["opacity"] = half(scene["opacity"])
     scene["scale"] = np.exp(half(np.log(scene["scale"])).astype(float)).astype(F)
