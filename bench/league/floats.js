@@ -6,7 +6,7 @@
     constructor(...args) {
       super(...args);
       this.addEventListener('message', e => {
-        const order = e.data && (e.data.order || e.data.sortedIndexes);
+        const order = e.data && (e.data.order || e.data.sortedIndexes || e.data.depthIndex);
         if (order) window.leagueOrder = Array.from(new Uint32Array(order));
       });
     }

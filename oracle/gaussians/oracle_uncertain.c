@@ -214,7 +214,8 @@ static void bound_direction(const oracle_doubting *d, const bounded c[3], bounde
     across[2] = bounded_divide(square_of(down, unit), squares, unit);
   }
   const double down = spread.v - apart.v, length = sqrt(c[1].v * c[1].v + down * down);
-  const double turned = d->model->is_setup_in_float ? (8.0 * unit * bounded_high(first) + 2.0 * own.off) / length : 0.0;
+  const double lost = d->view->rules->spread_cancels ? 2.0 * own.off : 0.0;
+  const double turned = d->model->is_setup_in_float ? (8.0 * unit * bounded_high(first) + lost) / length : 0.0;
   for (int k = 0; k < 3; k++)
     across[k].off = oracle_min(across[k].off + (turned >= 0.0 ? turned : 2.0), 2.0);
 }
