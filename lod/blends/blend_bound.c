@@ -35,8 +35,8 @@ static screen screen_of(int i, int degree) {
   return s;
 }
 
-static float greater(float a, float b) {
-  return a > b ? a : b;
+static void raise_to(float *most, float value) {
+  *most = value > *most ? value : *most;
 }
 
 static trace trace_of(const screen *s, const conic_blend *b, const double from[3], double *root) {
@@ -134,13 +134,14 @@ static void look_from(const screen *s, const conic_blend *parts, size_t n, conic
   for (size_t i = 0; i < at.n; i++) {
     float change = fabsf(at.left[i] - alone.left[i]);
     for (int c = 0; c < 3; c++) {
-      change = greater(change, fabsf(at.sum[c][i] - alone.sum[c][i]));
-      whole->bound.ceiling = greater(whole->bound.ceiling, greater(at.sum[c][i], alone.sum[c][i]));
+      raise_to(&change, fabsf(at.sum[c][i] - alone.sum[c][i]));
+      raise_to(&whole->bound.ceiling, at.sum[c][i]);
+      raise_to(&whole->bound.ceiling, alone.sum[c][i]);
     }
     sum += i < SIDE * SIDE ? (double)change : 0.0;
-    whole->bound.most = greater(whole->bound.most, change);
+    raise_to(&whole->bound.most, change);
   }
-  whole->bound.light = greater(whole->bound.light, (float)(sum * step * step * root));
+  raise_to(&whole->bound.light, (float)(sum * step * step * root));
 }
 
 /* A float that is no less and has few bits. */
@@ -158,7 +159,7 @@ void conic_blend_find_bound(const conic_blend *parts, size_t n, int sh_degree, c
     light += (double)parts[i].bound.light;
     most += (double)parts[i].bound.most;
     reach = fmax(reach, conic_length(d) + (double)parts[i].bound.reach);
-    whole->bound.ceiling = greater(whole->bound.ceiling, parts[i].bound.ceiling);
+    raise_to(&whole->bound.ceiling, parts[i].bound.ceiling);
   }
   if (n > 1 && whole->is_drawn)
     for (int i = 0; i < DIRECTIONS; i++) {
