@@ -4,19 +4,34 @@
 
 #include "core/lanes/lanes.h"
 
-/* conic_exp_negative */
+/* conic_exp_negative of n ≤ 2 at a time, in step, as each waits for its own chain of operations. */
+CONIC_INLINE void lanes_exp_negatives(int n, const lanes *x, lanes *falls) {
+  int_lanes k[2];
+  lanes r[2], p[2];
+  for (int i = 0; i < n; i++) {
+    lanes least = lanes_max(x[i], lanes_of(-80.0f));
+    k[i] = lanes_to_ints(least * 0x1.715476p+0f - 0.5f);
+    lanes k_float = lanes_of_ints(k[i]);
+    r[i] = (least - k_float * 0x1.63p-1f) + k_float * 0x1.bd0106p-13f;
+  }
+  for (int i = 0; i < n; i++)
+    p[i] = lanes_of(0x1.6a23cap-10f) * r[i] + 0x1.123a20p-7f;
+  for (int i = 0; i < n; i++)
+    p[i] = p[i] * r[i] + 0x1.5558f2p-5f;
+  for (int i = 0; i < n; i++)
+    p[i] = p[i] * r[i] + 0x1.555492p-3f;
+  for (int i = 0; i < n; i++)
+    p[i] = p[i] * r[i] + 0x1.fffffcp-2f;
+  for (int i = 0; i < n; i++)
+    p[i] = (p[i] * (r[i] * r[i]) + r[i]) + 1.0f;
+  for (int i = 0; i < n; i++)
+    falls[i] = lanes_of_bits(lanes_to_bits(p[i]) + indices_of_ints(k[i] * (1 << 23)));
+}
+
 CONIC_INLINE lanes lanes_exp_negative(lanes x) {
-  x = lanes_max(x, lanes_of(-80.0f));
-  int_lanes k = lanes_to_ints(x * 0x1.715476p+0f - 0.5f);
-  lanes k_float = lanes_of_ints(k);
-  lanes r = (x - k_float * 0x1.63p-1f) + k_float * 0x1.bd0106p-13f;
-  lanes p = lanes_of(0x1.6a23cap-10f);
-  p = p * r + 0x1.123a20p-7f;
-  p = p * r + 0x1.5558f2p-5f;
-  p = p * r + 0x1.555492p-3f;
-  p = p * r + 0x1.fffffcp-2f;
-  p = (p * (r * r) + r) + 1.0f;
-  return lanes_of_bits(lanes_to_bits(p) + indices_of_ints(k * (1 << 23)));
+  lanes fall;
+  lanes_exp_negatives(1, &x, &fall);
+  return fall;
 }
 
 /* conic_gauss_narrow */

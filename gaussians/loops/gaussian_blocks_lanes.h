@@ -75,12 +75,13 @@ CONIC_INLINE unsigned blocks_of_ellipse(const gaussian_record *r, float half_rea
   return met & 0xffffu;
 }
 
-/* Entry i's footprint; asks for one of those that follow, since they lie all over the memory. */
+/* Entry i's footprint, where they are taken in order; asks for those that follow, since they lie all over the memory.
+ */
 CONIC_INLINE const CONIC_STORED conic_gaussian_footprint *footprint_of_entry(const conic_gaussian_list *list,
                                                                              size_t i) {
-  enum { AHEAD = 8 };
-  if (i + AHEAD < list->n)
-    __builtin_prefetch(&list->footprints[list->entries[i + AHEAD]]);
+  enum { AHEAD = 32 };
+  for (size_t next = i > 0 ? i + AHEAD : 1; next < list->n && next <= i + AHEAD; next++)
+    __builtin_prefetch(&list->footprints[list->entries[next]]);
   return &list->footprints[list->entries[i]];
 }
 

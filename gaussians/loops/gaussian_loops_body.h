@@ -40,39 +40,77 @@ CONIC_INLINE meeting_lanes meet_disc(const gaussian_record *r, const CONIC_STORE
   return m;
 }
 
-CONIC_INLINE response respond(const scene *s, const gaussian_record *r, uint32_t footprint, places at,
-                              conic_gaussian_shape shape) {
-  const conic_gaussian_list *list = s->list;
-  const float near_z = list->rules->disc_near;
-  const int is_solid = list->rules->shape == CONIC_SHAPE_SOLID;
-  response to = {.z = lanes_of(r->z), .color = {lanes_of(r->color[0]), lanes_of(r->color[1]), lanes_of(r->color[2])}};
-  meeting_lanes m;
-  if (shape == CONIC_SHAPE_DISC)
-    m = meet_disc(r, &list->rays[footprint], at, is_solid);
-  else
-    m.half_q = half_q_of_ellipse(r, at);
+CONIC_INLINE response response_of(const gaussian_record *r) {
+  return (response){.z = lanes_of(r->z),
+                    .color = {lanes_of(r->color[0]), lanes_of(r->color[1]), lanes_of(r->color[2])}};
+}
+
+CONIC_INLINE lanes_mask cover(const scene *s, const gaussian_record *r, places at, lanes half_q, lanes alpha) {
+  return within_box(r, at) & lanes_at_least(half_q, lanes_of(0.0f)) & lanes_at_least(alpha, s->least);
+}
+
+CONIC_INLINE response respond_as_disc(const scene *s, const gaussian_record *r, uint32_t footprint, places at) {
+  const float near_z = s->list->rules->disc_near;
+  const int is_solid = s->list->rules->shape == CONIC_SHAPE_SOLID;
+  const meeting_lanes m = meet_disc(r, &s->list->rays[footprint], at, is_solid);
+  response to = response_of(r);
   to.alpha = lanes_alpha(s, r, m.half_q);
-  to.covered = within_box(r, at) & lanes_at_least(m.half_q, lanes_of(0.0f)) & lanes_at_least(to.alpha, s->least);
-  if (shape == CONIC_SHAPE_ELLIPSE && s->has_greatest)
-    to.covered = to.covered & lanes_at_least(s->greatest, m.half_q);
-  if (shape == CONIC_SHAPE_DISC && is_solid)
+  to.covered = cover(s, r, at, m.half_q, to.alpha);
+  if (is_solid)
     to.covered = to.covered & lanes_less(lanes_of(0.0f), m.z);
-  if (shape == CONIC_SHAPE_DISC && near_z > 0.0f) {
+  if (near_z > 0.0f) {
     to.covered = to.covered & lanes_at_least(m.z, lanes_of(near_z));
     to.z = m.z;
   }
   return to;
 }
 
+/* Of n ≤ 2 ellipses in step. */
+CONIC_INLINE void respond_as_ellipses(const scene *s, int n, const gaussian_record *const *r, places at, response *to) {
+  lanes half_q[2], below[2], falls[2];
+  for (int i = 0; i < n; i++) {
+    half_q[i] = half_q_of_ellipse(r[i], at);
+    below[i] = -half_q[i];
+  }
+  lanes_exp_negatives(n, below, falls);
+  for (int i = 0; i < n; i++) {
+    to[i] = response_of(r[i]);
+    to[i].alpha = lanes_alpha_of_fall(s, r[i], falls[i]);
+    to[i].covered = cover(s, r[i], at, half_q[i], to[i].alpha) & lanes_at_least(s->greatest, half_q[i]);
+  }
+}
+
+/* The first n listed, two by two; where nothing is wanted but what each has in its record, and all is before surfaces.
+ * Returns how many it went through. */
+CONIC_INLINE size_t composite_pairs(const scene *s, const gaussian_batch *b, size_t n, places at, pixels *p,
+                                    int wants) {
+  size_t i = 0;
+  for (; i + 1 < n && lanes_any(p->goes_on); i += 2) {
+    const gaussian_record *const r[2] = {&b->records[b->listed[i]], &b->records[b->listed[i + 1]]};
+    response to[2];
+    respond_as_ellipses(s, 2, r, at, to);
+    composite_response(s, &to[0], p, wants);
+    composite_response(s, &to[1], p, wants);
+  }
+  return i;
+}
+
 CONIC_INLINE void composite_vector(const scene *s, gaussian_batch *b, size_t n_listed, size_t pixel,
                                    conic_gaussian_shape shape, int wants) {
   const conic_gaussian_list *list = s->list;
   const places at = places_at(pixel);
+  const int has_pairs =
+      shape == CONIC_SHAPE_ELLIPSE && wants != CONIC_GAUSSIAN_ALL && !conic_gaussian_list_surface(list, 0);
   pixels p = take_pixels(s, b->goes_on[pixel / CONIC_LANES], pixel, wants);
-  for (size_t i = 0; i < n_listed && lanes_any(p.goes_on); i++) {
+  for (size_t i = has_pairs ? composite_pairs(s, b, n_listed, at, &p, wants) : 0; i < n_listed && lanes_any(p.goes_on);
+       i++) {
     const gaussian_record *r = &b->records[b->listed[i]];
     const uint32_t footprint = b->footprints[b->listed[i]];
-    response to = respond(s, r, footprint, at, shape);
+    response to;
+    if (shape == CONIC_SHAPE_DISC)
+      to = respond_as_disc(s, r, footprint, at);
+    else
+      respond_as_ellipses(s, 1, &r, at, &to);
     if (!lanes_any(to.covered))
       continue;
     if (wants == CONIC_GAUSSIAN_ALL)

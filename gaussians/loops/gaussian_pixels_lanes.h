@@ -8,8 +8,9 @@
 typedef struct scene {
   const conic_gaussian_list *list;
   conic_gaussian_tile *tile;
-  lanes most, least, stop, greatest;
-  int is_beyond_stop, has_greatest, falls_to_zero;
+  lanes most, least, greatest;
+  lanes stop; /* compositing ends below */
+  int falls_to_zero;
 } scene;
 
 CONIC_INLINE scene scene_of(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
@@ -18,10 +19,9 @@ CONIC_INLINE scene scene_of(const conic_gaussian_list *list, conic_gaussian_tile
                  tile,
                  lanes_of(rules->alpha_most),
                  lanes_of(rules->alpha_least),
-                 lanes_of(rules->stop),
-                 lanes_of(rules->greatest_half_q),
-                 rules->is_beyond_stop,
-                 rules->greatest_half_q > 0.0f,
+                 lanes_of(rules->greatest_half_q > 0.0f ? rules->greatest_half_q : __builtin_inff()),
+                 rules->is_beyond_stop ? lanes_of_bits(lanes_to_bits(lanes_of(rules->stop)) + 1u)
+                                       : lanes_of(rules->stop),
                  rules->fall_end > 0.0f};
 }
 
@@ -100,12 +100,11 @@ CONIC_INLINE void composite_planes_in_lanes(const scene *s, const response *r, l
     p->normal[k] = p->normal[k] + lanes_keep(goes, w * r->normal[k]);
 }
 
-CONIC_INLINE void composite_lanes(const scene *s, const response *r, pixels *p, int wants) {
-  lanes_mask covered = r->covered & p->goes_on;
-  if (conic_gaussian_list_surface(s->list, 0))
-    covered = covered & lanes_less(r->z, p->surface_z);
+/* What is before all surfaces. */
+CONIC_INLINE void composite_response(const scene *s, const response *r, pixels *p, int wants) {
+  const lanes_mask covered = r->covered & p->goes_on;
   lanes after = p->T * (1.0f - r->alpha), w = r->alpha * p->T;
-  const lanes_mask ends = s->is_beyond_stop ? lanes_at_least(s->stop, after) : lanes_less(after, s->stop);
+  const lanes_mask ends = lanes_less(after, s->stop);
   const lanes_mask goes = covered & lanes_not(ends);
   p->goes_on = p->goes_on & lanes_not(covered & ends);
   for (int k = 0; k < 3; k++)
@@ -118,6 +117,13 @@ CONIC_INLINE void composite_lanes(const scene *s, const response *r, pixels *p, 
     composite_planes_in_lanes(s, r, goes, w, after, p);
   p->count = lanes_increment(goes, p->count);
   p->T = lanes_select(goes, after, p->T);
+}
+
+CONIC_INLINE void composite_lanes(const scene *s, const response *r, pixels *p, int wants) {
+  response before = *r;
+  if (conic_gaussian_list_surface(s->list, 0))
+    before.covered = before.covered & lanes_less(r->z, p->surface_z);
+  composite_response(s, &before, p, wants);
 }
 
 #ifndef CONIC_ON_DEVICE

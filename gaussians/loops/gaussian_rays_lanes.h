@@ -6,11 +6,14 @@
 #include "gaussians/loops/gaussian_pixels_lanes.h"
 #include "gaussians/loops/ray_meetings_lanes.h"
 
-CONIC_INLINE lanes lanes_alpha(const scene *s, const gaussian_record *r, lanes half_q) {
-  lanes fall = lanes_exp_negative(-half_q);
+CONIC_INLINE lanes lanes_alpha_of_fall(const scene *s, const gaussian_record *r, lanes fall) {
   if (s->falls_to_zero)
     fall = (fall - s->list->rules->fall_end) * s->list->rules->fall_factor;
   return lanes_min(r->opacity * fall, s->most);
+}
+
+CONIC_INLINE lanes lanes_alpha(const scene *s, const gaussian_record *r, lanes half_q) {
+  return lanes_alpha_of_fall(s, r, lanes_exp_negative(-half_q));
 }
 
 CONIC_INLINE void add_planes_of_footprint(const conic_gaussian_list *list, uint32_t footprint, response *to) {
