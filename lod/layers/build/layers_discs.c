@@ -214,7 +214,7 @@ static float error_from_rows(disc_search *p, int is_wide, float enough, uint32_t
       const lanes_mask is_in =
           lanes_less_int(ints_of_indices(lanes_ascending(i)), lanes_of_int((int32_t)p->rows.list[i_row].end));
       const disc_errors found = errors_from_some(p->disc, p->chosen, i);
-      unsigned may = lanes_bits(is_in) & ~lanes_bits(lanes_less(lanes_of(enough), is_wide ? found.least : found.error));
+      unsigned may = lanes_bits(is_in) & ~lanes_bits(lanes_less(lanes_of(enough), found.least));
       lanes_store(errors, lanes_select(is_in, found.error, lanes_of(HUGE_VALF)));
       for (; may; may &= may - 1) {
         uint32_t lane = (uint32_t)__builtin_ctz(may);
@@ -230,7 +230,7 @@ static float error_from_rows(disc_search *p, int is_wide, float enough, uint32_t
           p->near[p->n_near - 1] = held;
         }
       }
-      for (int lane = 0; lane < CONIC_LANES && is_wide; lane++)
+      for (int lane = 0; lane < CONIC_LANES; lane++)
         least = errors[lane] < least ? errors[lane] : least;
     }
   return least;
@@ -240,18 +240,21 @@ static float error_from_rows(disc_search *p, int is_wide, float enough, uint32_t
  * and then the one that did. */
 static float error_of_disc(disc_search *p, float enough, uint32_t *last) {
   const conic_layers_disc before = disc_of(p->chosen, *last);
-  float least = error_from_one(p->disc, &before, p->beside2, 1);
-  for (int is_wide = 0; is_wide < 2 && !(least <= enough); is_wide++)
+  float least = error_from_one(p->disc, &before, p->beside2, 1), measured = HUGE_VALF;
+  for (int is_wide = 0; is_wide < 2 && !(least <= enough); is_wide++) {
     least = error_from_rows(p, is_wide, enough, last);
+    if (!(least <= enough) && p->n_near > 0)
+      measured = error_of_more_places(p, 1, enough);
+    if (measured <= enough)
+      return measured;
+  }
   if (least <= enough)
     return least;
   if (p->rows.n == 0) {
     const conic_layers_disc first = disc_of(p->chosen, conic_thinner_first(p->chosen->thinner));
     return error_from_one(p->disc, &first, HUGE_VALF, 1);
   }
-  float measured = error_of_more_places(p, 1, enough);
-  if (measured > enough)
-    measured = error_of_more_places(p, 0, enough);
+  measured = error_of_more_places(p, 0, enough);
   return measured < least ? measured : least;
 }
 
