@@ -32,9 +32,13 @@ def draw_pyvista(path, out):
 
 def draw_open3d(path, out):
     import open3d
-    cloud = open3d.io.read_point_cloud(path)
+    is_mesh = path.endswith(".obj")
+    cloud = open3d.io.read_triangle_mesh(path) if is_mesh else open3d.io.read_point_cloud(path)
     renderer = open3d.visualization.rendering.OffscreenRenderer(SIZE, SIZE)
     material = open3d.visualization.rendering.MaterialRecord()
+    if is_mesh:
+        cloud.compute_vertex_normals()
+        material.shader = "defaultLit"
     renderer.scene.add_geometry("cloud", cloud, material)
     box = cloud.get_axis_aligned_bounding_box()
     renderer.setup_camera(40.0, box.get_center(), box.get_center() + box.get_extent().max() * 2.0, [0.0, 1.0, 0.0])

@@ -1,47 +1,28 @@
 #include "core/estimate/neighbours.h"
 
-#if defined(__SSE2__)
-#include <emmintrin.h>
-#endif
-
 enum { MAX_DEPTH = 34 };
 
 /* Two doubles at a time, one for each of two neighbouring boxes. Comparisons cannot be predicted, so nothing here
  * branches. */
 typedef double box_pair __attribute__((vector_size(16)));
-typedef float float_pair __attribute__((vector_size(8)));
-typedef float float_four __attribute__((vector_size(16)));
-typedef int32_t place_four __attribute__((vector_size(16)));
+typedef int64_t box_pair_mask __attribute__((vector_size(16)));
 
 static inline box_pair greater_of(box_pair a, box_pair b) {
-#if defined(__SSE2__)
-  return (box_pair)_mm_max_pd((__m128d)a, (__m128d)b);
-#else
-  typedef int64_t box_pair_mask __attribute__((vector_size(16)));
   box_pair_mask is_a = a > b;
   return (box_pair)((is_a & (box_pair_mask)a) | (~is_a & (box_pair_mask)b));
-#endif
-}
-
-/* How far outside both boxes the query lies on an axis, squared. */
-static inline box_pair outside2(float_pair low, float_pair high, double query) {
-  box_pair below = __builtin_convertvector(low, box_pair) - query,
-           above = query - __builtin_convertvector(high, box_pair);
-  box_pair outside = greater_of(greater_of(below, above), (box_pair){0.0, 0.0});
-  return outside * outside;
 }
 
 /* The least squared distances from the query to two boxes, one after the other. Rounding is monotonic, and these sums
  * are formed like that of a point's distance: none is above the distance of any point in the box, to the last bit. */
 static inline box_pair box_distances2(const float boxes[2][6], const double query[3]) {
-  float_four part[3];
-  memcpy(part, boxes, sizeof part);
-  return outside2(__builtin_shufflevector(part[0], part[1], 0, 6), __builtin_shufflevector(part[0], part[2], 3, 5),
-                  query[0]) +
-         outside2(__builtin_shufflevector(part[0], part[1], 1, 7), __builtin_shufflevector(part[1], part[2], 0, 6),
-                  query[1]) +
-         outside2(__builtin_shufflevector(part[0], part[2], 2, 4), __builtin_shufflevector(part[1], part[2], 1, 7),
-                  query[2]);
+  box_pair sum = {0.0, 0.0};
+  for (int axis = 0; axis < 3; axis++) {
+    const box_pair low = {(double)boxes[0][axis], (double)boxes[1][axis]};
+    const box_pair high = {(double)boxes[0][3 + axis], (double)boxes[1][3 + axis]};
+    box_pair outside = greater_of(greater_of(low - query[axis], query[axis] - high), (box_pair){0.0, 0.0});
+    sum += outside * outside;
+  }
+  return sum;
 }
 
 /* Equal distances are told apart by position; no two slots have the same. */
@@ -72,6 +53,8 @@ typedef struct neighbour_search {
 } neighbour_search;
 
 /* The squared distances as floats, in whole blocks, and how many others each exceeds. */
+typedef float key_four __attribute__((vector_size(16)));
+typedef int32_t place_four __attribute__((vector_size(16)));
 typedef struct candidate_order {
   float keys[MOST_CANDIDATES + BLOCK_KEYS];
   int32_t places[MOST_CANDIDATES + BLOCK_KEYS];
@@ -79,7 +62,7 @@ typedef struct candidate_order {
 
 /* Compares each with each: for so few, that is quicker than sorting with its unpredictable comparisons. */
 static void rank_block(candidate_order *order, size_t begin, size_t n) {
-  float_four keys[BLOCK_KEYS / 4];
+  key_four keys[BLOCK_KEYS / 4];
   place_four places[BLOCK_KEYS / 4] = {{0}};
   memcpy(keys, order->keys + begin, sizeof keys);
   for (size_t j = 0; j < n; j++)

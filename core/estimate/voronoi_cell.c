@@ -29,19 +29,10 @@ void conic_voronoi_cell_cut(conic_voronoi_cell *cell, double x, double y) {
   /* Corners no farther than half way can't lie beyond the bisector. */
   if (0.5 * half2 >= cell->greatest2)
     return;
-  double beyond[CONIC_CELL_CORNERS];
-  int n_corners = 0, last = cell->n_corners - 1, n_beyond = 0;
-  for (int i = 0; i < cell->n_corners; i++) {
-    beyond[i] = cell->corners[i][0] * x + cell->corners[i][1] * y - half2;
-    n_beyond += beyond[i] > 0.0;
-  }
-  if (n_beyond == 0) {
-    measure_cell(cell);
-    return;
-  }
-  double before = beyond[last];
+  int n_corners = 0, last = cell->n_corners - 1;
+  double before = cell->corners[last][0] * x + cell->corners[last][1] * y - half2;
   for (int i = 0; i < cell->n_corners; last = i++) {
-    double here = beyond[i];
+    double here = cell->corners[i][0] * x + cell->corners[i][1] * y - half2;
     if ((before > 0.0) != (here > 0.0) && n_corners < CONIC_CELL_CORNERS) {
       double t = before / (before - here);
       corners[n_corners][0] = cell->corners[last][0] + t * (cell->corners[i][0] - cell->corners[last][0]);

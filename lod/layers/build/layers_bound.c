@@ -337,8 +337,7 @@ static conic_status find_node_error(conic_context *context, int is_alone, boundi
     node->error = find_most(context, is_alone, b, node->past);
     status = (conic_status)atomic_load(&b->status);
   }
-  conic_layers_chosen_release(context, &b->discs);
-  conic_memory_release(context, numbers);
+  conic_memory_release_these(context, b->discs.center[0], numbers);
   return status;
 }
 

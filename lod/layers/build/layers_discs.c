@@ -21,11 +21,6 @@ conic_status conic_layers_chosen_create(conic_context *context, const conic_thin
   return CONIC_OK;
 }
 
-void conic_layers_chosen_release(conic_context *context, conic_layers_chosen *chosen) {
-  conic_memory_release(context, chosen->center[0]);
-  *chosen = (conic_layers_chosen){.thinner = NULL};
-}
-
 void conic_layers_chosen_put(const conic_layers_chosen *chosen, size_t i, const conic_layers_disc *disc) {
   for (int axis = 0; axis < 3; axis++) {
     chosen->center[axis][i] = disc->center[axis];
@@ -91,18 +86,18 @@ typedef struct disc_places {
 
 /* The polygon is turned by an angle. */
 static void lay_out_places(const conic_layers_disc *disc, const float turn[2], disc_places *places) {
-  static const float across[N_CORNERS] = {
-      1.0f, 0.84775907f, 0.56645450f, 0.19891237f, -1.0f, -0.84775907f, -0.56645450f, -0.19891237f,
-      1.0f, 0.84775907f, 0.56645450f, 0.19891237f, -1.0f, -0.84775907f, -0.56645450f, -0.19891237f};
-  static const float up[N_CORNERS] = {0.19891237f,  0.56645450f,  0.84775907f,  1.0f,         0.19891237f,  0.56645450f,
-                                      0.84775907f,  1.0f,         -0.19891237f, -0.56645450f, -0.84775907f, -1.0f,
-                                      -0.19891237f, -0.56645450f, -0.84775907f, -1.0f};
+  static const float corners[4] = {1.0f, 0.84775907f, 0.56645450f, 0.19891237f};
+  float across[N_CORNERS], up[N_CORNERS];
+  for (int i = 0; i < N_CORNERS; i++) {
+    across[i] = corners[i % 4] * (i & 4 ? -disc->radius : disc->radius);
+    up[i] = corners[3 - i % 4] * (i & 8 ? -disc->radius : disc->radius);
+  }
   const float *n = disc->normal;
   float sign = n[2] >= 0.0f ? 1.0f : -1.0f, a = -1.0f / (sign + n[2]), b = n[0] * n[1] * a;
   const float u[3] = {1.0f + sign * (n[0] * n[0]) * a, sign * b, -sign * n[0]};
   const float v[3] = {b, sign + n[1] * n[1] * a, -n[1]};
   for (int i = 0; i < N_CORNERS; i += CONIC_LANES) {
-    lanes x = lanes_load(across + i) * disc->radius, y = lanes_load(up + i) * disc->radius;
+    lanes x = lanes_load(across + i), y = lanes_load(up + i);
     lanes along_u = x * turn[0] - y * turn[1], along_v = x * turn[1] + y * turn[0];
     for (int axis = 0; axis < 3; axis++)
       lanes_store(places->at[axis] + i, lanes_of(disc->center[axis]) + along_u * u[axis] + along_v * v[axis]);

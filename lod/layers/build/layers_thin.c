@@ -147,21 +147,6 @@ static float squared_distance(point a, point b) {
   return x * x + y * y + z * z;
 }
 
-typedef struct octant {
-  int32_t cell[3], side[3]; /* the point's own cell, and on which side of it the nearer ones are */
-} octant;
-
-static octant octant_of(const conic_thinner *thinner, point at) {
-  const float coordinates[3] = {at.x, at.y, at.z};
-  octant o;
-  for (int axis = 0; axis < 3; axis++) {
-    float scaled = coordinates[axis] * thinner->cells_a_step;
-    o.cell[axis] = (int32_t)scaled + 1;
-    o.side[axis] = scaled - (float)(o.cell[axis] - 1) < 0.5f ? -1 : 1;
-  }
-  return o;
-}
-
 /* The places in `cells` of a point's own cell, and of the nearer one on its other side, on an axis; their sum over the
  * axes is a cell's. */
 static inline void places_on(const conic_thinner *thinner, int axis, float coordinate, int32_t stride,
@@ -322,11 +307,13 @@ static void list_runs(const conic_thinner *thinner, const int32_t from[3], const
 }
 
 void conic_thinner_beside(const conic_thinner *thinner, const float at[3], int is_wide, conic_thinner_rows *rows) {
-  const octant o = octant_of(thinner, (point){at[0], at[1], at[2]});
   int32_t from[3], to[3], low[3], high[3];
   for (int axis = 0; axis < 3; axis++) {
-    from[axis] = o.cell[axis] - (is_wide || o.side[axis] < 0);
-    to[axis] = o.cell[axis] + (is_wide || o.side[axis] > 0);
+    float scaled = at[axis] * thinner->cells_a_step;
+    int32_t cell = (int32_t)scaled;
+    int is_low = scaled - (float)cell < 0.5f;
+    from[axis] = cell + 1 - (is_wide || is_low);
+    to[axis] = cell + 1 + (is_wide || !is_low);
     low[axis] = (from[axis] >> thinner->shift) - thinner->first_cell[axis];
     high[axis] = (to[axis] >> thinner->shift) - thinner->first_cell[axis];
     low[axis] = low[axis] > 0 ? low[axis] : 0;

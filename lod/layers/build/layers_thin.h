@@ -65,10 +65,9 @@ typedef struct conic_layers_chosen {
   float *center[3], *normal[3], *radius;
 } conic_layers_chosen;
 
-/* Gives the chosen discs memory, and releases it. Errors: MEMORY. */
+/* Gives the chosen discs memory, which the caller releases by center[0]. Errors: MEMORY. */
 conic_status conic_layers_chosen_create(conic_context *context, const conic_thinner *thinner, size_t n,
                                         conic_layers_chosen *chosen);
-void conic_layers_chosen_release(conic_context *context, conic_layers_chosen *chosen);
 void conic_layers_chosen_put(const conic_layers_chosen *chosen, size_t i, const conic_layers_disc *disc);
 
 /* The farthest that a disc, at its middle and at 16 places around it, is from the nearest of n discs; where it is no

@@ -84,7 +84,7 @@ static void check_sheet(conic_context *context, uint64_t scene) {
   CHECK(part == most && part > 0.0);
   for (size_t i = 1; i < N_ORDERS; i++)
     CHECK(part_in_order(&standing, discs, i * N / N_ORDERS, 1 + i) == part);
-  conic_layers_chosen_release(context, &standing);
+  conic_memory_release(context, standing.center[0]);
   conic_thinner_destroy(context, thinner);
 }
 
