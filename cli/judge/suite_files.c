@@ -155,6 +155,21 @@ static conic_status write_stored_spz(suite_files *suite, const char *path, const
   return status == CONIC_OK ? cli_suite_add_file(suite, path) : status;
 }
 
+static conic_status write_ply(suite_files *suite, const char *path, const conic_gaussians *gaussians) {
+  conic_output *output;
+  conic_status status = open_suite_file(suite, path, &output);
+  if (status != CONIC_OK)
+    return status;
+  const conic_gaussian_writer writer = {.context = suite->context,
+                                        .path = path,
+                                        .to = conic_output_stream(output),
+                                        .gaussians = gaussians,
+                                        .sh_degree = gaussians->sh_degree,
+                                        .lacks_normals = gaussians->count > 100000}; /* a fifth of the file */
+  status = conic_output_end(output, conic_gaussian_ply_write(&writer));
+  return status == CONIC_OK ? cli_suite_add_file(suite, path) : status;
+}
+
 static conic_status write_of_kind(suite_files *suite, const char *path, const conic_gaussians *gaussians,
                                   conic_gaussian_kind kind) {
   char full[4096];
@@ -180,7 +195,7 @@ static conic_status write_gaussian_scene(suite_files *suite, const suite_scene *
   if (status == CONIC_OK && scene->formats & SUITE_SPZ)
     settle_for_spz(&made);
   if (status == CONIC_OK)
-    status = write_of_kind(suite, path, &made, CONIC_GAUSSIANS_PLY);
+    status = write_ply(suite, path, &made);
   conic_gaussians_release(suite->context, &made);
   return status == CONIC_OK ? conic_gaussians_read(suite->context, full, NULL, &content->gaussians) : status;
 }

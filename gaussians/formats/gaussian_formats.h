@@ -62,7 +62,8 @@ typedef struct conic_gaussian_writer {
   FILE *to;
   const conic_gaussians *gaussians;
   const conic_gaussians_write_options *options;
-  int sh_degree; /* that is written: of the set's what the kind can hold */
+  int sh_degree;     /* that is written: of the set's what the kind can hold */
+  int lacks_normals; /* .ply: without nx, ny and nz, which are 0 */
 } conic_gaussian_writer;
 
 conic_status conic_gaussian_ply_write(const conic_gaussian_writer *writer);

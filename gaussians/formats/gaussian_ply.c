@@ -322,7 +322,8 @@ static void print_gaussian_header(const conic_gaussian_writer *writer, int is_wi
   conic_gaussian_writer_put_comments(writer, 0);
   fprintf(writer->to, "element vertex %zu\nproperty %s x\nproperty %s y\nproperty %s z\n", gaussians->count, wide, wide,
           wide);
-  fprintf(writer->to, "property float nx\nproperty float ny\nproperty float nz\n");
+  if (!writer->lacks_normals)
+    fprintf(writer->to, "property float nx\nproperty float ny\nproperty float nz\n");
   for (int i = 0; i < 3; i++)
     fprintf(writer->to, "property float f_dc_%d\n", i);
   for (size_t i = 0; i < 3 * n_rest; i++)
@@ -340,8 +341,9 @@ static unsigned char *put_value(unsigned char *to, float value) {
   return to + sizeof value;
 }
 
-static unsigned char *put_gaussian(const conic_gaussians *gaussians, size_t i, int is_wide, size_t n_rest,
+static unsigned char *put_gaussian(const conic_gaussian_writer *writer, size_t i, int is_wide, size_t n_rest,
                                    unsigned char *to) {
+  const conic_gaussians *gaussians = writer->gaussians;
   float room[CONIC_MOST_HARMONICS];
   const float *sh = conic_gaussians_harmonics(gaussians, i, room);
   for (int axis = 0; axis < 3; axis++) {
@@ -353,7 +355,7 @@ static unsigned char *put_gaussian(const conic_gaussians *gaussians, size_t i, i
     conic_store_double(to, mean);
     to += 8;
   }
-  for (int k = 0; k < 3; k++)
+  for (int k = 0; k < 3 && !writer->lacks_normals; k++)
     to = put_value(to, 0.0f);
   for (int channel = 0; channel < 3; channel++)
     to = put_value(to, sh[channel]);
@@ -377,7 +379,7 @@ conic_status conic_gaussian_ply_write(const conic_gaussian_writer *writer) {
   conic_status status = CONIC_OK;
   print_gaussian_header(writer, is_wide, n_rest);
   for (size_t i = 0; status == CONIC_OK && i < gaussians->count; i++) {
-    end = put_gaussian(gaussians, i, is_wide, n_rest, end);
+    end = put_gaussian(writer, i, is_wide, n_rest, end);
     if (i % 64 != 63 && i + 1 < gaussians->count)
       continue;
     status = conic_gaussian_writer_put(writer, rows, (size_t)(end - rows));
