@@ -35,26 +35,25 @@ static double elevation_for(const conic_source_scale *scale, const double up[3])
 /* A pinhole so far off that what it frames is what parallel rays do. */
 static const double parallel_fov_deg = 0.5;
 
-/* Turns the camera before a slope or a facade, by steps, where it would be seen from beside or from behind. */
+/* Turns the camera before a slope or a facade that it would see from beside or from behind, to where the studio's light
+ * falls on it from the left. */
 static conic_status turn_to_front(conic_source *source, conic_framing *framing) {
-  static const double least_slope = 0.25, least_cosine = 0.5, good_cosine = 0.85, step_deg = 15.0;
-  enum { MOST_STEPS = 12 };
+  static const double least_cosine = 0.5, step_deg = 15.0, good[2] = {-0.5, 0.8660254037844386};
+  enum { N_STEPS = 24 };
   conic_framing level = *framing;
-  double front[3], rows[3][3];
-  conic_status status = conic_source_front(source, front);
+  double front[3], rows[3][3], best = -HUGE_VAL, least_slope;
+  conic_status status = conic_source_front(source, front, &least_slope);
   level.elevation_deg = 0.0;
-  conic_framing_rotation(&level, rows);
-  double beside = conic_dot(front, rows[0]), towards = -conic_dot(front, rows[2]);
-  double slope = sqrt(beside * beside + towards * towards);
-  if (status != CONIC_OK || slope < least_slope || towards >= least_cosine * slope)
-    return status;
-  for (int i = 0; i < MOST_STEPS && towards < good_cosine * slope; i++) {
-    level.azimuth_deg += beside > 0.0 ? step_deg : -step_deg;
+  for (int i = 0; i < N_STEPS && status == CONIC_OK; i++, level.azimuth_deg += step_deg) {
     conic_framing_rotation(&level, rows);
-    towards = -conic_dot(front, rows[2]);
+    double beside = conic_dot(front, rows[0]), towards = -conic_dot(front, rows[2]);
+    double slope = sqrt(beside * beside + towards * towards), value = good[0] * beside + good[1] * towards;
+    if (i == 0 && (slope < least_slope || towards >= least_cosine * slope))
+      return CONIC_OK;
+    framing->azimuth_deg = value > best ? level.azimuth_deg : framing->azimuth_deg;
+    best = value > best ? value : best;
   }
-  framing->azimuth_deg = level.azimuth_deg;
-  return CONIC_OK;
+  return status;
 }
 
 /* What of the framing is found, and the turn. */

@@ -80,16 +80,16 @@ static int is_ground(const conic_source_scale *scale) {
   return !scale->n_triangles && scale->up[2] > 0.0 && scale->up_basis <= CONIC_UP_OPEN;
 }
 
-conic_status conic_source_front(conic_source *source, double front[3]) {
+conic_status conic_source_front(conic_source *source, double front[3], double *least_slope) {
+  static const double least_of_ground = 0.25, least_of_facades = 0.5; /* boxes that lack a side are none */
   conic_up_basis basis;
   conic_status status = CONIC_OK;
   memset(front, 0, 3 * sizeof *front);
-  if (conic_source_gaussians(source))
-    return CONIC_OK;
-  if (!source->has_front)
+  if (!source->has_front && !conic_source_gaussians(source))
     status = look_around(source, &basis);
   if (status == CONIC_OK)
     memcpy(front, source->fronts[is_ground(&source->scale)], 3 * sizeof *front);
+  *least_slope = is_ground(&source->scale) ? least_of_ground : least_of_facades;
   return status;
 }
 

@@ -112,9 +112,10 @@ extern const conic_source_kind conic_source_kind_drawing, conic_source_kind_octr
     conic_source_kind_hybrid, conic_source_kind_patches, conic_source_kind_gaussians, conic_source_kind_scenes,
     conic_source_kind_together, conic_source_kind_shared, conic_source_kind_levels;
 
-/* The mean of the normals by area, of points over land turned up; 0 where they say nothing, as of Gaussians. Looks at
- * the source once. Collective where it is shared. Errors: as conic_source_stand. */
-conic_status conic_source_front(conic_source *source, double front[3]);
+/* The mean of the normals by area, of points over land turned up; 0 where they say nothing, as of Gaussians. Across the
+ * direction up, it is at least *least_slope of what has a front. Looks at the source once. Collective where it is
+ * shared. Errors: as conic_source_stand. */
+conic_status conic_source_front(conic_source *source, double front[3], double *least_slope);
 
 /* Adds the object "skipped" to a source's facts. */
 void conic_facts_add_repairs(conic_facts *facts, const conic_repairs *repairs);
