@@ -67,10 +67,11 @@ static conic_status face_line(cli_sheet_job *job, cli_panel *panel, const double
   panel->from_line = panel->low[0] = conic_dot(at, panel->axes[0]);
   panel->high[0] = panel->low[0] + length;
   panel->near_away = conic_dot(at, panel->axes[2]);
+  span_box(job, panel->axes[2], panel->box_away);
   if (length > 0.0 && panel->near_away < panel->box_away[1])
     return CONIC_OK;
-  return conic_fail(job->session->context, CONIC_ERROR_ARGUMENT, "%s: a line from A to B has a length",
-                    job->scene.inputs[0]);
+  return conic_fail(job->session->context, CONIC_ERROR_ARGUMENT,
+                    "%s: a line from A to B has a length, and something of the scene behind it", job->scene.inputs[0]);
 }
 
 static void name_facade(const cli_sheet_job *job, cli_panel *panel) {
@@ -104,7 +105,6 @@ static conic_status place_panel(cli_sheet_job *job, cli_panel *panel, const doub
   if (panel->has_line) {
     panel->letter = (char)('A' + (*n_lines)++);
     status = face_line(job, panel, plan);
-    span_box(job, panel->axes[2], panel->box_away);
   }
   for (int i = panel->has_line; i < 2 && status == CONIC_OK; i++) {
     double span[2];

@@ -26,6 +26,7 @@ run 0 sheet corners.obj --up z --unit ft --scale 1:1000 -o feet.png --json feet.
 grep -q '"gsd": 0.277' feet.json || fail "a foot: $(grep gsd feet.json)"
 run 0 sheet corners.obj --up z --gsd 0.1 --dpi 254 -o gsd.png --json gsd.json
 grep -q '"scale": 1000,' gsd.json || fail "$(grep scale gsd.json)"
+run 0 sheet corners.obj --up z --section 500001,5000010:500029,5000007:1 --scale 1:1000 -o slant.png
 run 0 make terrain -n 4000 -o land.ply
 sheet=(sheet land.ply --plan --facade 30 --section 0.1,0.2:0.8,0.7:0.02 --beyond 0.3 --scale 1:5 --dpi 90)
 run 0 "${sheet[@]}" -o one.png
