@@ -55,7 +55,8 @@ static conic_status read_key(conic_json *json, const conic_camera *camera, conic
     return conic_json_wrong(json, "every key has a time in seconds, later than the key before");
   if (json->status == CONIC_OK && !(fabs(key->values[CONIC_PATH_ROLL]) <= 1e6))
     return conic_json_wrong(json, "a roll is at most a million degrees");
-  if (json->status == CONIC_OK && memcmp(key->values, key->values + CONIC_PATH_TARGET, 3 * sizeof(double)) == 0)
+  const double *at = key->values, *target = at + CONIC_PATH_TARGET;
+  if (json->status == CONIC_OK && at[0] == target[0] && at[1] == target[1] && at[2] == target[2]) /* 0 is −0 */
     return conic_json_wrong(json, "a key's place and target are one");
   return json->status;
 }
