@@ -89,7 +89,8 @@ static gaussian *read_ply(const char *data, size_t *n, int *n_sh) {
 static void write_npy(const char *folder, const char *name, const camera *c, const float *rgba) {
   char path[4096], header[119];
   snprintf(path, sizeof path, "%s/%s.npy", folder, name);
-  snprintf(header, sizeof header, "{'descr': '<f4', 'fortran_order': False, 'shape': (%d, %d, 4)}", c->height, c->width);
+  snprintf(header, sizeof header, "{'descr': '<f4', 'fortran_order': False, 'shape': (%d, %d, 4)}", c->height,
+           c->width);
   FILE *file = fopen(path, "wb");
   if (!file)
     exit((perror(path), 1));
@@ -108,7 +109,8 @@ int main(int argc, char **argv) {
   char *cases = read_file(argv[1], "cases.tsv", &size), name[256], scene[256], view[256], profile[64];
   float behind[3];
   for (char *line = strtok(cases, "\n"); line; line = strtok(NULL, "\n")) {
-    if (sscanf(line, "%255s %255s %255s %63s %f,%f,%f", name, scene, view, profile, behind, behind + 1, behind + 2) != 7 ||
+    if (sscanf(line, "%255s %255s %255s %63s %f,%f,%f", name, scene, view, profile, behind, behind + 1, behind + 2) !=
+            7 ||
         strcmp(profile, argv[3]) != 0)
       continue;
     char *ply = read_file(argv[1], scene, &size), *json = read_file(argv[1], view, &size);
