@@ -19,7 +19,7 @@ typedef struct chosen_point {
 struct conic_thinner {
   size_t n, most_points;
   point *points; /* loaded */
-  point low, high;
+  float low[3], high[3];
   uint32_t *order; /* in which they are looked at */
   size_t n_ordered;
   size_t n_chosen;
@@ -73,14 +73,6 @@ void conic_thinner_destroy(conic_context *context, conic_thinner *thinner) {
                              thinner->cells, thinner->by_cell, thinner->at[0], thinner->at[1], thinner->at[2], thinner);
 }
 
-static float lesser(float a, float b) {
-  return a < b ? a : b;
-}
-
-static float greater(float a, float b) {
-  return a > b ? a : b;
-}
-
 static point point_of(uint64_t key) {
   return (point){(float)conic_layers_step(key, 0), (float)conic_layers_step(key, 1), (float)conic_layers_step(key, 2)};
 }
@@ -102,16 +94,20 @@ static void shuffle(conic_thinner *thinner) {
 void conic_thinner_load(conic_thinner *thinner, const uint64_t *keys, size_t stride_bytes, size_t n) {
   const unsigned char *at = (const unsigned char *)keys;
   thinner->n = n;
-  thinner->low = (point){HUGE_VALF, HUGE_VALF, HUGE_VALF};
-  thinner->high = (point){0.0f, 0.0f, 0.0f};
+  for (int axis = 0; axis < 3; axis++) {
+    thinner->low[axis] = HUGE_VALF;
+    thinner->high[axis] = 0.0f;
+  }
   for (size_t i = 0; i < n; i++, at += stride_bytes) {
     uint64_t key;
     memcpy(&key, at, sizeof key);
     const point p = point_of(key);
     thinner->points[i] = p;
-    thinner->low = (point){lesser(p.x, thinner->low.x), lesser(p.y, thinner->low.y), lesser(p.z, thinner->low.z)};
-    thinner->high =
-        (point){greater(p.x, thinner->high.x), greater(p.y, thinner->high.y), greater(p.z, thinner->high.z)};
+    const float on_axis[3] = {p.x, p.y, p.z};
+    for (int axis = 0; axis < 3; axis++) {
+      thinner->low[axis] = on_axis[axis] < thinner->low[axis] ? on_axis[axis] : thinner->low[axis];
+      thinner->high[axis] = on_axis[axis] > thinner->high[axis] ? on_axis[axis] : thinner->high[axis];
+    }
   }
   shuffle(thinner);
 }
@@ -124,8 +120,6 @@ static int32_t cell_of(const conic_thinner *thinner, float coordinate) {
 /* Cells are twice the distance wide and a hair, so that what is within the distance of a point lies in the eight cells
  * whose common corner is nearest to it. The grid has those of all points and one more on each side. */
 static void clear(conic_thinner *thinner, double distance) {
-  const float low[3] = {thinner->low.x, thinner->low.y, thinner->low.z},
-              high[3] = {thinner->high.x, thinner->high.y, thinner->high.z};
   uint64_t n = UINT64_MAX;
   thinner->n_chosen = 0;
   thinner->edge = (float)((distance > 1.0 ? 2.0 * distance : 2.0) * (1.0 + 1e-4));
@@ -133,8 +127,9 @@ static void clear(conic_thinner *thinner, double distance) {
   for (thinner->shift = 0; n > thinner->n_cells; thinner->shift++) {
     n = 1;
     for (int axis = 0; axis < 3; axis++) {
-      thinner->first_cell[axis] = (cell_of(thinner, low[axis]) - 1) >> thinner->shift;
-      thinner->cells_on[axis] = ((cell_of(thinner, high[axis]) + 1) >> thinner->shift) - thinner->first_cell[axis] + 1;
+      thinner->first_cell[axis] = (cell_of(thinner, thinner->low[axis]) - 1) >> thinner->shift;
+      thinner->cells_on[axis] =
+          ((cell_of(thinner, thinner->high[axis]) + 1) >> thinner->shift) - thinner->first_cell[axis] + 1;
       n *= (uint64_t)thinner->cells_on[axis];
     }
   }
