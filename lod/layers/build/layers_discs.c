@@ -161,7 +161,7 @@ typedef struct disc_search {
   const conic_layers_disc *disc;
   float beside2; /* what is nearer is in the rows */
   conic_thinner_rows rows;
-  uint32_t near[MOST_NEAR]; /* some that may be near enough, the first the most likely one */
+  uint32_t near[MOST_NEAR]; /* some that may be near enough */
   size_t n_near;
 } disc_search;
 
@@ -219,11 +219,6 @@ static float error_from_rows(disc_search *p, int is_wide, float enough, uint32_t
         }
         if (p->n_near < MOST_NEAR)
           p->near[p->n_near++] = i + lane;
-        if (errors[lane] < least && p->n_near > 0) {
-          uint32_t held = p->near[0];
-          p->near[0] = p->near[p->n_near - 1];
-          p->near[p->n_near - 1] = held;
-        }
       }
       for (int lane = 0; lane < CONIC_LANES; lane++)
         least = errors[lane] < least ? errors[lane] : least;
