@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cli/judge/suite_scenes.h"
+#include "core/files/file.h"
 #include "core/files/sha256.h"
 
 extern const char cli_suite_readme[]; /* its README.md */
@@ -29,6 +30,10 @@ conic_status cli_suite_make_folder(suite_files *suite, const char *path);
 
 /* Adds a written file to the list, by its bytes on the disk. Errors: IO. */
 conic_status cli_suite_add_file(suite_files *suite, const char *path);
+
+/* Opens a file of the suite for writing; ends it, and adds it. Errors: as conic_output_open and _end. */
+conic_status cli_suite_open_file(suite_files *suite, const char *path, conic_output **output);
+conic_status cli_suite_end_file(suite_files *suite, const char *path, conic_output *output);
 
 /* Writes a text file, and adds it. Errors: as conic_output_open and _end. */
 conic_status cli_suite_write_text(suite_files *suite, const char *path, const char *text);

@@ -48,7 +48,7 @@ static cli_bench_line line_of(int i_method, int edge) {
 
 /* A line passes with the right reference, and not with one that has a bit wrong in any plane, timed or not. */
 static void test_planted(cli_session *session, const char *scene_name, int i_method) {
-  const cli_bench_patience patience = {2, 2, 0.0};
+  const cli_bench_patience patience = {2, 2, 0.0, 1};
   cli_bench_scene scene;
   cli_bench_pictures pictures = {.timed_planes = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_WEIGHT};
   cli_bench_line line = line_of(i_method, 90);
@@ -181,7 +181,7 @@ static void test_trace(void) {
 
 /* A frame that is shared out as for sixteen has more chunks and is the same picture; its tasks add up to it. */
 static void test_simulation(cli_session *session) {
-  const cli_bench_patience patience = {3, 3, 0.0};
+  const cli_bench_patience patience = {3, 3, 0.0, 1};
   cli_bench_scene scene;
   cli_session planner = {.command = "bench", .threads = 1};
   cli_bench_pictures pictures = {.timed_planes = 1u << CONIC_PLANE_RGBA};

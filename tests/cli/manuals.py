@@ -67,7 +67,7 @@ others = set(
     """--trace --trace-ranks --mpi
     --build --install --prefix --test-dir --preset --parallel --label-exclude --output-on-failure --version --static
     --cflags --libs --format --fix --check --list --break --all --help
-    --manylinux""".split()
+    --manylinux --variable""".split()
 )
 
 
