@@ -67,7 +67,7 @@ static void tell_levels_rest(const conic_source *source, conic_facts *facts) {
   const levels_source *s = (const levels_source *)source;
   conic_gaussians_source_tell(source, facts);
   CONIC_ADD_FACTS(facts, CONIC_OBJECT("gaussian_levels"), CONIC_COUNT("gaussians", s->cut.n),
-                  CONIC_COUNT("gaussians_merged", s->cut.n_merged), CONIC_NUMBER("bound", s->cut.bound),
+                  CONIC_COUNT("gaussians_merged", s->cut.n_merged), CONIC_NUMBER("change", s->cut.bound),
                   CONIC_COUNT("clouds", s->levels->shape.n_clouds), CONIC_COUNT("clouds_read", s->levels->n_read),
                   CONIC_COUNT("bytes_received", conic_ranges_received(s->levels->ranges)), CONIC_END);
 }
