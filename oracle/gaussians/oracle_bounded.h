@@ -65,3 +65,9 @@ static inline double bounded_high(bounded a) {
 static inline int bounded_is_finite(bounded a) {
   return oracle_is_finite(a.v) && oracle_is_finite(a.off);
 }
+/* The nearest place from low to high. */
+static inline bounded bounded_within(bounded a, double low, double high) {
+  const double v = oracle_min(oracle_max(a.v, low), high), down = oracle_min(oracle_max(bounded_low(a), low), high);
+  const double up = oracle_min(oracle_max(bounded_high(a), low), high);
+  return (bounded){v, oracle_max(v - down, up - v)};
+}
