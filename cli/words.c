@@ -104,6 +104,9 @@ static const cli_word option_words[] = {
     {"tolerance", "max-abs"},
     {"psnr", "min-psnr"},
     {"ssim", "min-ssim"},
+    {"again ao accumulate aperture catcher deadline deep focus fps frames holdout memory motion occlusion path place "
+     "preview progressive repeat resumable resume save-shot shadow show shutter stereo tone transparency turntable",
+     NULL, NULL, "it is an option of conic render"},
 };
 
 /* Whether a word of so many letters is one of those in `said`. */
