@@ -136,9 +136,10 @@ static int parse_size(const char *text, int size[2]) {
   char width[16];
   const char *cross = strchr(text, 'x');
   if (!cross || cross - text >= (int)sizeof width)
-    return cli_because("2 whole numbers are wanted");
+    return cli_because("2 whole numbers are wanted, as 640x360");
   snprintf(width, sizeof width, "%.*s", (int)(cross - text), text);
-  return (parse_int(width, &size[0]) && parse_int(cross + 1, &size[1])) || cli_because("2 whole numbers are wanted");
+  return (parse_int(width, &size[0]) && parse_int(cross + 1, &size[1])) ||
+         cli_because("2 whole numbers are wanted, as 640x360");
 }
 
 static int parse_choice(const char *text, const char *const *choices, int *value) {

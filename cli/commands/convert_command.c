@@ -272,7 +272,7 @@ static int check_paths(convert_job *job, const char *const *inputs, int n_inputs
   else if (!conic_gaussians_find_kind(job->base.output, &job->write.kind))
     return cli_usage(
         "convert: %s: give the output the ending .ply, .compressed.ply, .splat, .spz, .sog, .gltf or .glb, "
-        "or say --to KIND",
+        "or say --to KIND; points are written by conic cut, as .ply or .las",
         job->base.output);
   job->write.sh_bits[0] = job->write.sh_bits[1] = job->sh_bits;
   if (holds_points(inputs[0]))

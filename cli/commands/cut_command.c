@@ -219,7 +219,9 @@ static int check_cut(cut_job *job, const char *const *inputs, int n_inputs) {
     return cli_usage("cut: standard input cannot be read twice; give a file");
   if (job->part.error > 0.0 && !is_in_layers(job))
     return cli_usage("cut: --error is of clouds in levels: .lpc, COPC, EPT and Potree");
-  return cli_build_check(&job->base, inputs, 1, job->is_layered ? "lpc" : job->is_las ? "las" : "ply");
+  const char *own = conic_file_ending(job->base.output);
+  int is_written = job->is_layered || job->is_las || strcasecmp(own, "ply") == 0;
+  return cli_build_check(&job->base, inputs, 1, is_written ? own : "ply, .lpc or .las");
 }
 
 static int run_cut(cli_session *session, int argc, char **argv) {

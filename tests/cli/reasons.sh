@@ -39,8 +39,8 @@ done << 'END'
 --up|0,0,0|0,0,0 is no direction
 --up|1,2|3 numbers are wanted
 --eye|1,2,3,4|3 numbers are wanted
---size|10|2 whole numbers are wanted
---size|1.5x2|2 whole numbers are wanted
+--size|10|2 whole numbers are wanted, as 640x360
+--size|1.5x2|2 whole numbers are wanted, as 640x360
 --ramp|1,1|the second end is above the first
 --ramp|1,2,3|2 numbers are wanted
 --focus|1,2,3|2 numbers are wanted

@@ -104,6 +104,9 @@ done << 'END'
 0|render: --res means --size|render s.ply -o a.png --res=16x16
 2|render: --size: "16" is not understood|render s.ply -o a.png --resolution 16
 0|make: -s means --seed|make sphere -o a.ply -n 20 --noise 0.1 -s 7
+2|as 640x360|render s.ply -o a.png --size 16
+2|ending .ply, .lpc or .las|cut points.xyz -o a.laz
+2|points are written by conic cut|convert s.ply -o a.las
 2|--size WIDTHxHEIGHT is both|render s.ply -o a.png --width 16 --height 16
 2|--size WIDTHxHEIGHT is both|render s.ply -o a.png --height=16
 2|--size WIDTHxHEIGHT is both|render s.ply -o a.png -w 16
