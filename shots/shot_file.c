@@ -45,7 +45,7 @@ static void write_field_list(shot_writer *w, const conic_shot_row *row, const vo
   if (n == 0)
     return;
   if (row->is_apart)
-    memcpy(&first, first, sizeof first);
+    memcpy(&first, (const void *)first, sizeof first);
   conic_rows_standard(row->of, &standard);
   begin_member(w, row->name, depth);
   for (size_t i = 0; i < n; i++) {

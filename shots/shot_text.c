@@ -179,7 +179,7 @@ static void visit_list(visiting *v, const conic_shot_row *row, const void *value
   conic_standard standard;
   const char *first = (const char *)value + row->offset;
   if (row->is_apart)
-    memcpy(&first, first, sizeof first);
+    memcpy(&first, (const void *)first, sizeof first);
   conic_rows_standard(row->of, &standard);
   for (size_t i = 0; i < conic_row_length(row, value); i++) {
     int n = snprintf(v->path + n_path, sizeof v->path - n_path, "%s[%zu].", row->name, i);

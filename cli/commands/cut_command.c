@@ -1,4 +1,5 @@
 /* conic cut: makes a cloud from a part of a cloud in a file or on a web server. */
+#include <strings.h>
 
 #include "cli/command.h"
 #include "cli/commands/build_steps.h"

@@ -2,8 +2,12 @@
 #pragma once
 
 #include <stddef.h>
+#include <stdint.h>
 
 #include "conic/context.h"
+
+/* An array of a file that would have more bytes is wrong. */
+#define CONIC_MOST_BYTES ((size_t)(SIZE_MAX / 2 < (uint64_t)1 << 40 ? SIZE_MAX / 2 : (uint64_t)1 << 40))
 
 /* Room for `count` elements of `size` bytes, aligned to 64 bytes, contents undefined. Null where memory or the limit is
  * exceeded, which is logged then. Zero elements give a valid pointer. Thread-safe. */

@@ -47,7 +47,7 @@ static int take_npy_shape(npy_text header, conic_numpy_array *array) {
     return 0;
   while (i < value.n && value.text[i] != ')') {
     size_t n = 0, start = i;
-    for (; i < value.n && value.text[i] >= '0' && value.text[i] <= '9' && n < (size_t)1 << 40; i++)
+    for (; i < value.n && value.text[i] >= '0' && value.text[i] <= '9' && n < CONIC_MOST_BYTES / 10; i++)
       n = n * 10 + (size_t)(value.text[i] - '0');
     if (i == start || (i < value.n && value.text[i] >= '0' && value.text[i] <= '9') ||
         array->n_axes == CONIC_NUMPY_MOST_AXES)

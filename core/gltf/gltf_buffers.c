@@ -147,8 +147,7 @@ conic_status conic_gltf_open_view(conic_gltf *gltf, double number, conic_gltf_by
   view->stride = (size_t)known->stride;
   if (!known->is_packed)
     return conic_gltf_open_part(gltf, known->buffer, known->offset, known->length, view);
-  const size_t most = (size_t)1 << 40;
-  if (!conic_gltf_is_index(known->length, most < SIZE_MAX / 2 ? most : SIZE_MAX / 2))
+  if (!conic_gltf_is_index(known->length, CONIC_MOST_BYTES))
     return conic_gltf_wrong(gltf, "a view of %g bytes", known->length);
   view->n_bytes = (size_t)known->length;
   conic_status status = known->own ? CONIC_OK : conic_gltf_unpack(gltf, known, view->n_bytes);

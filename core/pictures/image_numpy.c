@@ -5,7 +5,7 @@
 #include "core/files/zip.h"
 #include "core/image/image_common.h"
 
-static const size_t most_plane_bytes = (size_t)1 << 32;
+static const size_t most_plane_bytes = CONIC_MOST_BYTES < UINT32_MAX ? CONIC_MOST_BYTES : (size_t)UINT32_MAX;
 
 /* Where the pixels of an array are: its axes by their meaning. */
 typedef struct numpy_pixels {

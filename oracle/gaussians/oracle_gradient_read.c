@@ -133,11 +133,10 @@ typedef struct gradient_arrays {
 } gradient_arrays;
 
 static conic_status open_gradient_array(conic_context *context, const conic_zip *zip, int kind, gradient_arrays *a) {
-  static const size_t most_bytes = (size_t)1 << 40;
   size_t n_bytes;
   if (!conic_zip_has(zip, npz_names[kind]))
     return CONIC_OK;
-  conic_status status = conic_zip_read(zip, npz_names[kind], most_bytes, &a->blocks[kind], &n_bytes);
+  conic_status status = conic_zip_read(zip, npz_names[kind], CONIC_MOST_BYTES, &a->blocks[kind], &n_bytes);
   conic_numpy_array *array = &a->arrays[kind];
   if (status == CONIC_OK)
     status = conic_numpy_array_open(context, zip->name, npz_names[kind], a->blocks[kind], n_bytes, array);

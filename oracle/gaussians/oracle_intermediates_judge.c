@@ -88,7 +88,7 @@ static conic_status open_given(intermediates_judging *j, const conic_zip *zip, i
   snprintf(file, sizeof file, "%s.npy", about[name].name);
   if (name >= GIVEN_RENDER_COLORS || !conic_zip_has(zip, file))
     return CONIC_OK;
-  conic_status status = conic_zip_read(zip, file, (size_t)1 << 40, &given->block, &n_bytes);
+  conic_status status = conic_zip_read(zip, file, CONIC_MOST_BYTES, &given->block, &n_bytes);
   if (status == CONIC_OK)
     status = conic_numpy_array_open(j->context, j->path, file, given->block, n_bytes, &given->a);
   if (status != CONIC_OK)
