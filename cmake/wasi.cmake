@@ -1,0 +1,28 @@
+# A toolchain file for WebAssembly with WASI, by Debian's clang, lld and wasi-libc (docs/notes/platforms.md):
+#   cmake --toolchain cmake/wasi.cmake …
+# CONIC_LIBRARIES is a folder of libraries for it, if any: scripts/web builds zlib, libpng and others.
+set(CMAKE_SYSTEM_NAME WASI)
+set(CMAKE_SYSTEM_PROCESSOR wasm32)
+list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR}/wasi)
+set(CMAKE_C_COMPILER clang)
+set(CMAKE_C_COMPILER_TARGET wasm32-wasi)
+set(CMAKE_AR llvm-ar)
+set(CMAKE_RANLIB llvm-ranlib)
+set(CMAKE_TRY_COMPILE_PLATFORM_VARIABLES CONIC_LIBRARIES)
+set(CMAKE_FIND_ROOT_PATH ${CONIC_LIBRARIES})
+set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
+foreach(kind LIBRARY INCLUDE PACKAGE)
+  set(CMAKE_FIND_ROOT_PATH_MODE_${kind} ONLY)
+endforeach()
+# What its C library lacks stands in cmake/wasi, for one thread; what it emulates is to be asked for.
+set(emulated MMAN SIGNAL GETPID PROCESS_CLOCKS)
+set(CMAKE_C_FLAGS_INIT "-isystem ${CMAKE_CURRENT_LIST_DIR}/wasi")
+foreach(name ${emulated})
+  string(APPEND CMAKE_C_FLAGS_INIT " -D_WASI_EMULATED_${name}")
+  string(TOLOWER ${name} name)
+  string(REPLACE _ - name ${name})
+  string(APPEND CMAKE_EXE_LINKER_FLAGS_INIT " -lwasi-emulated-${name}")
+endforeach()
+string(APPEND CMAKE_EXE_LINKER_FLAGS_INIT " -z stack-size=8388608")
+set(CMAKE_HAVE_LIBC_PTHREAD TRUE)
+set(BUILD_SHARED_LIBS OFF)
