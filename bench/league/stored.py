@@ -6,7 +6,8 @@
 PROGRAM is one of the functions below; CAMERA is conic's, since colours are often rounded after their harmonics are
 summed up, which depends on the eye. OUT has harmonics of degree 0, so that `conic judge OUT --profile …` tells rules
 of drawing from rules of storing. ORDER is a list of the Gaussians from the back to the front, as the program sorted
-them: OUT has them from the front, so that the judge can tell that they were drawn in the order of the file. Each function names the lines that it repeats.
+them: OUT has them from the front, so that the judge can tell that they were drawn in the order of the
+file. Each function names the lines that it repeats.
 """
 import json
 import pathlib
@@ -132,14 +133,28 @@ def of_covariances(scene, sigma):
     scene.update(scale=np.sqrt(np.maximum(values, 0)).astype(F), rotation=unit(q))
 
 
-def splat(scene, eye):
+def dilate(scene, sigma, camera, h):
+    """Covariances that are seen larger by h px²: the least ones that are, by the Jacobian at the mean. Gives where the means
+    are (1 is the picture's border) and the covariances that are seen."""
+    view = np.array(camera["world_to_camera"], float)
+    x, y, z = (scene["mean"].astype(float) @ view[:3, :3].T + view[:3, 3]).T
+    rows = np.zeros((len(z), 2, 3))
+    rows[:, 0, 0], rows[:, 0, 2] = camera["fx"] / z, -camera["fx"] * x / z ** 2
+    rows[:, 1, 1], rows[:, 1, 2] = camera["fy"] / z, -camera["fy"] * y / z ** 2
+    back = np.linalg.pinv(rows @ view[:3, :3])
+    of_covariances(scene, sigma + h * back @ back.transpose(0, 2, 1))
+    two = rows @ view[:3, :3] @ sigma @ (rows @ view[:3, :3]).transpose(0, 2, 1) + h * np.eye(2)
+    return np.maximum(np.abs(2 * camera["fx"] / camera["width"] * x), np.abs(2 * camera["fy"] / camera["height"] * y)) / z, two
+
+
+def splat(scene, eye, camera):
     """antimatter15/splat, main.js:382-414: quaternions as they are; four times the covariance cut off to 16 bits."""
     sigma = half(4 * covariances(scene, scene["rotation"]), 10) / 4.0
     of_covariances(scene, np.tril(sigma) + np.tril(sigma, -1).transpose(0, 2, 1))
     scene["color"] = scene["sh"][:, 0] * C0 + F(0.5)
 
 
-def gs3d(scene, eye):
+def gs3d(scene, eye, camera):
     """GaussianSplats3D, INRIAV1PlyParser.js:130-152: colours and opacities of 8 bits, cut off;
     harmonics up to degree 2, cut off to 16 bits (SplatMesh.js:1065); SplatMesh.js:942-945: the
     last Gaussian of a scene keeps the first of its six covariances and loses the others."""
@@ -153,7 +168,7 @@ def gs3d(scene, eye):
     scene["opacity"] = np.floor(np.clip(scene["opacity"] * 255, 0, 255)).astype(F) / F(255)
 
 
-def playcanvas(scene, eye):
+def playcanvas(scene, eye, camera):
     """PlayCanvas 2.22, gsplat-resource.js:92-260 (halfs; harmonics of 11, 10, 11 bits of the largest of them), then
     glsl/chunks/gsplat/frag/formats/containerCompactWrite.js (gsplat-params.js:61: the default): colours of 11, 11 and 10
     bits in 0 to 4, ln s of 8 bits in −12 to 9, opacities of 8, quaternions of 11, 11 and 10 about half the angle."""
@@ -182,7 +197,7 @@ def playcanvas(scene, eye):
     scene["opacity"] = (np.floor(np.clip(half(scene["opacity"]), 0, 1).astype(float) * 255 + 0.5) / 255).astype(F)
 
 
-def spark(scene, eye):
+def spark(scene, eye, camera):
     """Spark 2 with ext splats, splat_encode.rs:127-136 and splatDefines.glsl: halfs of opacity, colour and ln s;
     quaternions of an axis of 10 and 10 bits on an octahedron and an angle of 12."""
     color = half(scene["sh"][:, 0] * C0 + F(0.5))
@@ -194,33 +209,72 @@ def spark(scene, eye):
     scene["color"] = half(color + harmonics(rest.astype(F), directions(scene, eye)))
     scene["opacity"] = half(scene["opacity"])
     scene["scale"] = np.exp(half(np.log(scene["scale"])).astype(float)).astype(F)
-    q = unit(scene["rotation"]).astype(float)
-    angle = 2 * np.arccos(np.clip(q[:, 0], 0, 1))
-    s = np.sin(angle / 2)[:, None]
+    q = axis_and_angle(unit(scene["rotation"]), lambda w: np.arccos(np.clip(w, 0, 1)))
+    # packed once more on the GPU (splatDefines.glsl, packSplatExt), whose arc cosine, Mesa's, is off by up to 2e-4: half a step
+    scene["rotation"] = axis_and_angle(q, lambda w: np.sqrt(1 - w) * (
+        np.pi / 2 + w * (np.pi / 4 - 1 + w * (0.08132463 - 0.02363318 * w))))
+
+
+def axis_and_angle(q, arccos):
+    """Quaternions of an axis of 10 and 10 bits on an octahedron and an angle of 12."""
+    q = unit(q).astype(float)
+    half_angle = arccos(np.minimum(q[:, 0], 1))
+    s = np.sin(half_angle)[:, None]
     axis = np.where(np.abs(s) < 1e-6, [1.0, 0, 0], q[:, 1:] / np.where(np.abs(s) < 1e-6, 1, s))
     p = axis[:, :2] / np.abs(axis).sum(1, keepdims=True)
     p = np.where(axis[:, 2:] < 0, (1 - np.abs(p[:, ::-1])) * np.where(p >= 0, 1, -1), p)
     p = np.floor(np.clip((p * 0.5 + 0.5) * 1023, 0, 1023) + 0.5) / 1023 * 2 - 1
-    angle = np.floor(np.clip(angle / np.pi * 4095, 0, 4095) + 0.5) / 4095 * np.pi
+    half_angle = np.floor(np.clip(half_angle * 2 / np.pi * 4095, 0, 4095) + 0.5) / 4095 * np.pi / 2
     z = 1 - np.abs(p).sum(1, keepdims=True)
     t = np.maximum(-z, 0)
     axis = np.concatenate((p + np.where(p >= 0, -t, t), z), 1)
     axis /= np.linalg.norm(axis, axis=1, keepdims=True)
-    scene["rotation"] = np.concatenate((np.cos(angle / 2)[:, None], axis * np.sin(angle / 2)[:, None]), 1).astype(F)
+    return np.concatenate((np.cos(half_angle)[:, None], axis * np.sin(half_angle)[:, None]), 1).astype(F)
 
 
-def gausscam(scene, eye):
+def gausscam(scene, eye, camera):
     """gausscam, README: harmonics of degree 0 alone, and unit quaternions."""
     scene["color"] = scene["sh"][:, 0] * C0 + F(0.5)
 
 
-PROGRAMS = {"splat": splat, "gs3d": gs3d, "playcanvas": playcanvas, "spark": spark, "gausscam": gausscam}
+def aframe(scene, eye, camera):
+    """aframe-gaussian-splatting, index.js: quaternions as they are, covariances in 32,767 steps of the largest of their six
+    numbers, by parseInt, which takes 1e-7 for 1 (:386); dilated by 0.3 (:139)."""
+    sigma = covariances(scene, scene["rotation"])
+    most = np.abs(sigma).max((1, 2), keepdims=True)
+    steps = sigma * 32767.0 / most
+    small = (np.abs(steps) < 1e-6) & (steps != 0)
+    with np.errstate(divide="ignore"):
+        first = np.trunc(steps / 10.0 ** np.floor(np.log10(np.abs(np.where(small, steps, 1)))))
+    dilate(scene, np.where(small, first, np.trunc(steps)) * (most / 32767.0).astype(F), camera, 0.3)
+    scene["color"] = scene["sh"][:, 0] * C0 + F(0.5)
+
+
+def gsplatjs(scene, eye, camera):
+    """gsplat.js, data.cpp: as splat, and RenderProgram.ts:78: dilated by 0.3 of half pixels."""
+    sigma = half(4 * covariances(scene, scene["rotation"]), 10) / 4.0
+    dilate(scene, np.tril(sigma) + np.tril(sigma, -1).transpose(0, 2, 1), camera, 0.075)
+    scene["color"] = scene["sh"][:, 0] * C0 + F(0.5)
+
+
+def viser(scene, eye, camera):
+    """viser, _scene_api.py: covariances of 16 bits, colours and opacities of 8, cut off; GaussianSplatsHelpers.ts:
+    dilated by 0.3 (:124), left out beyond 1.1 half pictures (:86) or where opacity times determinant is below ¼ (:148)."""
+    sigma = covariances(scene, unit(scene["rotation"])).astype(np.float16).astype(float)
+    where, seen = dilate(scene, sigma, camera, 0.3)
+    scene["color"], scene["opacity"] = (np.floor(np.clip(x, 0, 1).astype(float) * 255) / 255 for x in (
+        scene["sh"][:, 0] * C0 + F(0.5), scene["opacity"].astype(F)))
+    scene["opacity"] = np.where((where > 1.1) | (scene["opacity"] * np.linalg.det(seen) < 0.25), 0, scene["opacity"]).astype(F)
+
+
+PROGRAMS = {"aframe": aframe, "gsplatjs": gsplatjs, "viser": viser, "splat": splat,
+            "gs3d": gs3d, "playcanvas": playcanvas, "spark": spark, "gausscam": gausscam}
 
 
 def store(program, scene, camera, out, order=None):
     numbers = read(scene)
     view = np.array(camera["world_to_camera"], float)
-    PROGRAMS[program](numbers, -view[:3, :3].T @ view[:3, 3])
+    PROGRAMS[program](numbers, -view[:3, :3].T @ view[:3, 3], camera)
     if order:
         first = np.array(order[: len(numbers["mean"])])[::-1]
         numbers = {name: values[first] for name, values in numbers.items()}
