@@ -1,4 +1,4 @@
-"""Makes a floor and 30 photographs' cameras around it, and compares what they see at 20 places."""
+"""Makes a floor and 12 photographs' cameras around it, and compares what they see at 20 places."""
 import array
 import json
 import math
@@ -6,7 +6,7 @@ import os
 import re
 import sys
 
-N_VIEWS, SIZE, FOCAL = 30, 120, 150.0
+N_VIEWS, SIZE, FOCAL = 12, 120, 150.0
 PLACES = [(0.9 * math.cos(i), 0.0, 0.9 * math.sin(2.3 * i)) for i in range(20)]
 
 

@@ -155,13 +155,13 @@ static void test_fringes(fixture *f) {
   conic_image_release(f->context, &clear);
 }
 
-/* Where memory asks for bands, they fit together: rows of 16 × 60 samples, 20 million in all. A band begins its own
+/* Where memory asks for bands, they fit together: rows of 16 × 60 samples, 18 million in all. A band begins its own
  * count of rows, so that a footprint's fraction of a pixel may be rounded otherwise. */
 static void test_bands(fixture *f) {
   conic_render_statistics whole;
   int n_differing = 0;
   fill_scene(f);
-  fixture_camera(f, 60, 1400, 60.0);
+  fixture_camera(f, 60, 1160, 60.0);
   f->camera.cam_from_world[2][3] = 2.0;
   render_samples(f, 16);
   if (IS_SANITIZED)

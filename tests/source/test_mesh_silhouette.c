@@ -264,13 +264,13 @@ int main(int argc, char **argv) {
     examine(&f, argv[i], strrchr(argv[i], '/') ? strrchr(argv[i], '/') + 1 : argv[i], (1u << N_WAYS) - 1, 1, 0);
   for (int i = 0; i < MADE && argc <= 2; i++) {
     const char *path = make_mesh(i);
-    examine(&f, path, made_names[i], i ? ASKED : ASKED & ~(1 << ROUND), i == 1 ? 8 : 5, 1);
+    examine(&f, path, made_names[i], i ? ASKED : ASKED & ~(1 << ROUND), i == 1 ? 13 : 8, 1);
     CHECK(remove(path) == 0);
   }
   for (int i = 0; i < 2 && argc <= 2; i++) {
     const char *path = check_data(argc > 1 ? argv[1] : ".", data[i]);
     if (path)
-      examine(&f, path, data[i], ASKED, 8, 1);
+      examine(&f, path, data[i], ASKED, 13, 1);
   }
   fixture_close(&f);
   files_end(context);

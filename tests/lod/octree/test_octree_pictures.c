@@ -169,7 +169,7 @@ static double worst_block(const picture *a, const picture *b) {
 
 static void test_zoom(fixture *f, const char *what) {
   static picture pictures[2], wholes[2];
-  enum { N_FRAMES = 60 };
+  enum { N_FRAMES = 30 };
   conic_selection selection = {0};
   conic_octree *octree = octree_build(f->context, &f->splats, 0);
   f->options.near_z = conic_octree_near(octree);
