@@ -5,6 +5,11 @@
 
 #include "tests/support/examine.h"
 
+/* One of so many pixels is looked at, unless a test says otherwise. */
+#ifndef STABILITY_ONE_OF
+#define STABILITY_ONE_OF 3
+#endif
+
 static const double stability_pi = 3.14159265358979323846;
 
 /* n × n discs over a rectangle, in two colours by squares. */
@@ -89,13 +94,13 @@ static inline int stability_fills(int method) {
   return strcmp(name, "point") != 0 && strcmp(name, "disc") != 0;
 }
 
-/* The methods draw what the oracle says at a third of the pixels, to its bounds, in every plane; at most so large a
+/* The methods draw what the oracle says at some of the pixels, to its bounds, in every plane; at most so large a
  * share of the covered pixels may hang on roundings: of `point` and of the method `doubtful` any, since on a regular
  * grid many points lie on the borders of pixels. The image of the last method is left in the fixture. */
 static inline void stability_agree_but(fixture *f, const char *name, double unstable_share, const char *doubtful) {
   for (int method = 0; method < CONIC_N_METHODS; method++) {
     f->options.method = (conic_method)method;
-    outcome o = examine_some(f, 3);
+    outcome o = examine_some(f, STABILITY_ONE_OF);
     const conic_oracle_verdict verdict = o.verdict;
     double share = (double)verdict.unstable_pixels / fmax(1.0, (double)verdict.covered_pixels);
     printf("%-44s %-7s rgba %.1e  Z %.1e  unstable %.3f %% of %zu\n", name, conic_method_name((conic_method)method),
