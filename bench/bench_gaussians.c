@@ -1,5 +1,5 @@
-/* Scenes of Gaussians on the bench: a profile takes the place of a method. docs/reference/performance.md says which stage
- * is which. */
+/* Scenes of Gaussians on the bench: a profile takes the place of a method. docs/reference/performance.md says which
+ * stage is which. */
 
 #include "bench/bench.h"
 #include "gaussians/draw/gaussian_footprint.h"

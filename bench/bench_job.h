@@ -42,8 +42,8 @@ typedef struct cli_bench_job {
 /* Fills in the lines. Returns the exit code, after a message. The caller frees job->lines. */
 int cli_bench_plan(cli_bench_job *job);
 
-/* Runs job->command for each number of threads; the only line has the schedules. Returns the exit code, after a message.
- */
+/* Runs job->command for each number of threads; the only line has the schedules. Returns the exit code, after a
+ * message. */
 int cli_bench_whole_run(cli_bench_job *job);
 
 /* Measures every line. Returns the exit code, after a message; 1 where a picture was wrong. */

@@ -15,9 +15,9 @@ typedef struct conic_shot_plan {
   int is_accumulated; /* it is the mean of samples */
   int is_gathered;    /* from views by pinholes */
   conic_lit lit;
-  unsigned planes; /* what has to be drawn: the shot's, and what these are made of */
-  int has_windows; /* it can be drawn piece by piece, to the same bits: in strips, or by several processes */
-  int is_composited;  /* surfaces are among Gaussians */
+  unsigned planes;   /* what has to be drawn: the shot's, and what these are made of */
+  int has_windows;   /* it can be drawn piece by piece, to the same bits: in strips, or by several processes */
+  int is_composited; /* surfaces are among Gaussians */
 } conic_shot_plan;
 
 /* Errors: ARGUMENT (a member is out of its range; what cannot be together). */

@@ -342,7 +342,8 @@ static int run(cli_session *session, int argc, char **argv) {
   enum { MANY = 16 };
   job.start_seconds = start;
   if (exit_code == CLI_DONE) {
-    session->draws_many_frames = job.is_every_view || (double)job.repeat * cli_frames_count(&job) >= MANY || job.accumulating.n_samples >= MANY;
+    session->draws_many_frames =
+        job.is_every_view || (double)job.repeat * cli_frames_count(&job) >= MANY || job.accumulating.n_samples >= MANY;
     exit_code = cli_session_open(session);
   }
   if (exit_code == CLI_DONE) {

@@ -39,7 +39,8 @@ void conic_outputs_give_up(conic_context *context);
 
 /* Removes the files that killed programs left beside PATH when writing to it: hidden files named after processes that
  * have ended, and scratch files that kept their names. They must be untouched for a minute, since other machines may
- * write to the same disk. Opening an output does it; who needs room on the disk long before does it himself. Errors: MEMORY. */
+ * write to the same disk. Opening an output does it; who needs room on the disk long before does it himself. Errors:
+ * MEMORY. */
 conic_status conic_output_sweep(conic_context *context, const char *path);
 
 /* Follows PATH through symbolic links, whether the file exists or not; 0 where the room is too small or links go

@@ -11,7 +11,7 @@ typedef struct conic_gaussian_composition {
   const conic_gaussian_footprint *footprints;
   const conic_gaussian_ray *rays; /* null: the shape has none */
   const float (*normals)[3];      /* null: not wanted */
-  int wants;                  /* of conic_gaussian_list */
+  int wants;                      /* of conic_gaussian_list */
   const conic_gaussian_bins *bins;
   conic_gaussian_target target;
 } conic_gaussian_composition;

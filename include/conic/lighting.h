@@ -132,8 +132,8 @@ CONIC_API conic_status conic_splats_occlude(conic_context *context, const conic_
                                             const conic_splats *splats, double spacing,
                                             const conic_lighting_options *options, float *ao);
 
-/* Eye-dome lighting: darkens the rgba of a drawn picture where its plane Z has neighbours that are nearer to the eye, by
- * up to so many stops, 0 to 16 (docs/reference/lighting.md). Errors: ARGUMENT (no such planes, or sizes). */
+/* Eye-dome lighting: darkens the rgba of a drawn picture where its plane Z has neighbours that are nearer to the eye,
+ * by up to so many stops, 0 to 16 (docs/reference/lighting.md). Errors: ARGUMENT (no such planes, or sizes). */
 CONIC_API conic_status conic_image_eye_dome(conic_context *context, const conic_camera *camera, double stops,
                                             conic_image *image);
 

@@ -5,14 +5,7 @@
 
 enum { VERSION = 1 };
 
-enum {
-  FLAG_QUANTIZED = 1,
-  FLAG_COLOR_CODES = 2,
-  FLAG_COLORS = 4,
-  FLAG_OPACITIES = 8,
-  FLAG_DOTS = 16,
-  ALL_FLAGS = 31
-};
+enum { FLAG_QUANTIZED = 1, FLAG_COLOR_CODES = 2, FLAG_COLORS = 4, FLAG_OPACITIES = 8, FLAG_DOTS = 16, ALL_FLAGS = 31 };
 
 /* The records of clip lines are in the file as they are in memory. */
 _Static_assert(sizeof(conic_clip) == 32, "clip records of 32 bytes");

@@ -62,4 +62,3 @@ void conic_moments_facing(const conic_moments *moments, double normal[3]);
 
 /* The ellipse of the covariance in the plane of u and v (Confetti Eq. 3, §4.3). */
 conic_ellipse conic_moments_shape(const conic_moments *moments, const double u[3], const double v[3]);
-

@@ -146,8 +146,8 @@ static conic_status leave_out_strays(conic_context *context, const conic_splats_
 }
 
 /* conic_drawing_bounds of what all processes have. */
-static size_t find_shared_bounds(conic_context *context, const conic_splats_shares *shares, const conic_drawing *drawing, double low[3],
-                                 double high[3]) {
+static size_t find_shared_bounds(conic_context *context, const conic_splats_shares *shares,
+                                 const conic_drawing *drawing, double low[3], double high[3]) {
   return shares->team ? conic_shares_bounds(shares, drawing->splats, low, high)
                       : conic_drawing_bounds_by(context, drawing, low, high);
 }

@@ -53,7 +53,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n_bytes) {
   if (status == CONIC_OK) {
     check_found_strips(&file);
     FUZZ_CHECK(conic_strips_file_begin(input.context, input.path, written.path, STRIPS_EXAMPLE_KEY, &strips_example, 1,
-                                     &again) == CONIC_OK);
+                                       &again) == CONIC_OK);
     FUZZ_CHECK(again.n_found == file.n_found);
     conic_strips_file_end(input.context, &again);
   }

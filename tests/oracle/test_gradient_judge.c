@@ -57,8 +57,8 @@ static void test_gradient_classes(conic_context *context, conic_gaussian_profile
   CHECK(v.pass && v.gaussians[CONIC_PIXEL_EQUAL] == N_GAUSSIANS && v.max_abs[CONIC_GRADIENT_SH] == 0.0);
   for (size_t i = 0; i < N_GAUSSIANS; i++) /* the largest derivative by an opacity */
     at = fabs(g.opacity[i]) > fabs(g.opacity[at]) ? i : at;
-  double *const numbers[CONIC_N_GRADIENT_KINDS] = {&g.mean[2][at], &g.scale[1][at], &g.rotation[3][at], &g.opacity[at],
-                                                   &g.sh[12 * at + 4], &g.place[1][at]};
+  double *const numbers[CONIC_N_GRADIENT_KINDS] = {&g.mean[2][at], &g.scale[1][at],    &g.rotation[3][at],
+                                                   &g.opacity[at], &g.sh[12 * at + 4], &g.place[1][at]};
   const int places[CONIC_N_GRADIENT_KINDS] = {2, 1, 3, 0, 4, 1};
   for (int kind = 0; kind < CONIC_N_GRADIENT_KINDS; kind++) {
     const double kept = *numbers[kind];

@@ -27,10 +27,10 @@ static void scene_splats(conic_context *context, size_t n, int with_rest, conic_
   options.type = CONIC_SCENE_KNOT;
   options.count = n;
   options.offset[1] = 1e6;
-  CHECK_OK(conic_splats_allocate(
-      context, n,
-      CONIC_SPLATS_TANGENTS | CONIC_SPLATS_COLORS | (with_rest ? CONIC_SPLATS_OPACITIES | CONIC_SPLATS_DOTS : 0u),
-      splats));
+  CHECK_OK(conic_splats_allocate(context, n,
+                                 CONIC_SPLATS_TANGENTS | CONIC_SPLATS_COLORS |
+                                     (with_rest ? CONIC_SPLATS_OPACITIES | CONIC_SPLATS_DOTS : 0u),
+                                 splats));
   CHECK_OK(conic_scene_create(context, &options, &scene));
   CHECK_OK(conic_scene_sample(scene, 0, n, splats));
   conic_scene_destroy(scene);
