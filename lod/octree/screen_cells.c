@@ -209,15 +209,24 @@ static int is_first_of_cell(const cells_job *job, size_t i) {
   return i == 0 || key & STAYS || (key ^ job->items[i - 1].key) >> 3 * N_HALVINGS;
 }
 
-/* The cells that begin among so many splats. */
+/* The first splat from i on with which a cell begins; `end` where none does before it. */
+static size_t next_cell(const cells_job *job, size_t i, size_t end) {
+  while (i < end && !is_first_of_cell(job, i))
+    i++;
+  return i;
+}
+
+/* The cells that begin among so many splats. Loops load whole batches, and behind these splats others are written. */
 static void join_task(void *data, size_t i_task) {
-  const cells_job *job = data;
-  size_t last = (i_task + 1) * ITEMS_A_TASK, end;
-  for (size_t i = i_task * ITEMS_A_TASK; i < last && i < job->n; i = end) {
-    for (end = i + 1; end < job->n && !is_first_of_cell(job, end);)
-      end++;
-    if (is_first_of_cell(job, i))
-      join_cell(job, i, end, N_HALVINGS);
+  cells_job job = *(const cells_job *)data;
+  conic_splats own = *job.sorted;
+  size_t begin = i_task * ITEMS_A_TASK, last = job.n - begin < ITEMS_A_TASK ? job.n : begin + ITEMS_A_TASK, end;
+  size_t i = next_cell(&job, begin, last);
+  own.count = i < last ? next_cell(&job, last, job.n) : i;
+  job.sorted = &own;
+  for (; i < own.count; i = end) {
+    end = next_cell(&job, i + 1, own.count);
+    join_cell(&job, i, end, N_HALVINGS);
   }
 }
 
