@@ -3,7 +3,7 @@
 
 /* For memfd_create. */
 #ifndef _GNU_SOURCE
-#define _GNU_SOURCE
+#define _GNU_SOURCE /* NOLINT(bugprone-reserved-identifier,cert-dcl*) */
 #endif
 
 #include <stdint.h>

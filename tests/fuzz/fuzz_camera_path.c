@@ -1,7 +1,8 @@
 /* Keys of a camera's way: whatever they are, the cameras between them can be looked through. */
+#include "tests/fuzz/fuzz.h"
+
 #include "core/cameras/camera_path.h"
 #include "core/image/view_arguments.h"
-#include "tests/fuzz/fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n_bytes) {
   fuzz_input input = fuzz_open(bytes, n_bytes);

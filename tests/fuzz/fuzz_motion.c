@@ -1,6 +1,7 @@
 /* Keys of a motion; the files that they name are left alone. */
-#include "accumulation/motion_file.h"
 #include "tests/fuzz/fuzz.h"
+
+#include "accumulation/motion_file.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n_bytes) {
   fuzz_input input = fuzz_open(bytes, n_bytes);
