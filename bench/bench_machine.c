@@ -98,7 +98,7 @@ typedef struct vector_loops {
     for (long i = 0; i < n_steps; i++)                                                                                 \
       for (int k = 0; k < N_CHAINS; k++) {                                                                             \
         chains[k] = factor / chains[k];                                                                                \
-        for (size_t lane = 0; lane < BYTES / sizeof(float); lane++)                                                    \
+        for (size_t lane = 0; lane < (size_t)(BYTES) / sizeof(float); lane++)                                          \
           chains[k][lane] = sqrtf(chains[k][lane]);                                                                    \
       }                                                                                                                \
     for (int k = 1; k < N_CHAINS; k++)                                                                                 \
@@ -110,25 +110,27 @@ typedef struct vector_loops {
  */
 #define DEFINE_GATHER(NAME_OF_GATHER, LANES)                                                                           \
   static void NAME_OF_GATHER(long n_steps, const float *from, const uint32_t *indices, float *result) {                \
-    float sums[4 * LANES] = {0.0f};                                                                                    \
+    float sums[4 * (LANES)] = {0.0f};                                                                                  \
     for (long i = 0; i < n_steps; i++) {                                                                               \
-      const uint32_t *at = indices + (size_t)i * 4 * LANES % GATHERED_FROM;                                            \
-      for (int k = 0; k < 4 * LANES; k++)                                                                              \
+      const uint32_t *at = indices + (size_t)i * 4 * (LANES) % GATHERED_FROM;                                          \
+      for (int k = 0; k < 4 * (LANES); k++)                                                                            \
         sums[k] += from[at[k]];                                                                                        \
     }                                                                                                                  \
-    for (int k = 1; k < 4 * LANES; k++)                                                                                \
+    for (int k = 1; k < 4 * (LANES); k++)                                                                              \
       sums[0] += sums[k];                                                                                              \
     *result = sums[0];                                                                                                 \
   }
 
+/* NOLINTBEGIN(bugprone-macro-parentheses): an attribute stands bare */
 #define DEFINE_LOOPS(SET, TARGET, LANES)                                                                               \
   TARGET static void compute_##SET(long n_steps, float factor, float term, float *result);                             \
   TARGET static void divide_##SET(long n_steps, float factor, float term, float *result);                              \
   TARGET static void gather_##SET(long n_steps, const float *from, const uint32_t *indices, float *result);            \
-  DEFINE_COMPUTE(compute_##SET, 4 * LANES)                                                                             \
-  DEFINE_DIVIDE(divide_##SET, 4 * LANES)                                                                               \
+  DEFINE_COMPUTE(compute_##SET, 4 * (LANES))                                                                           \
+  DEFINE_DIVIDE(divide_##SET, 4 * (LANES))                                                                             \
   DEFINE_GATHER(gather_##SET, LANES)                                                                                   \
   static const vector_loops loops_##SET = {LANES, compute_##SET, divide_##SET, gather_##SET};
+/* NOLINTEND(bugprone-macro-parentheses) */
 
 DEFINE_LOOPS(plain, , 4)
 #if defined(__x86_64__)

@@ -130,10 +130,11 @@ static int list_ways(axis_job *job) {
 /* Whether an option of the way decides the time alone. */
 static int is_of_work(const cli_effects_job *effects, const cli_chart_way *way) {
   for (int i = 0; i < effects->n_given; i++)
-    for (int k = 0; k < way->n_factors; k++)
-      if (effects->given[i].acts.is_work &&
-          strcmp(way->words[2 * k] + strspn(way->words[2 * k], "-"), effects->given[i].name) == 0)
+    for (int k = 0; k < way->n_factors; k++) {
+      const char *word = way->words[(size_t)k * 2];
+      if (effects->given[i].acts.is_work && strcmp(word + strspn(word, "-"), effects->given[i].name) == 0)
         return 1;
+    }
   return 0;
 }
 

@@ -27,7 +27,7 @@ static int write_statistics(const chart_job *job, double seconds) {
   const int n_named = job->scene.n_inputs;
   cli_json_count(json, "scenes", (uint64_t)(n_named ? n_named : CLI_N_CHART_SCENES));
   cli_json_count(json, "methods", n_named ? 0 : CONIC_N_METHODS);
-  cli_json_count(json, "points", (uint64_t)(job->methods.n_points + job->scenes.n_points));
+  cli_json_count(json, "points", (uint64_t)job->methods.n_points + (uint64_t)job->scenes.n_points);
   cli_json_count(json, "representation_points", (uint64_t)cli_axis_count_of(&job->scenes, "as"));
   if (cli_axis_in_time(&job->scenes)) {
     char line[1024];

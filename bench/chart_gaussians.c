@@ -60,7 +60,7 @@ static conic_status open_chart(gaussian_chart_job *job) {
 
 static conic_status find_truths(gaussian_chart_job *job) {
   conic_status status = CONIC_OK;
-  for (int i = 0; i < job->chart->n_truths && status == CONIC_OK; i++) {
+  for (int i = 0; i < CLI_N_TRUTHS && i < job->chart->n_truths && status == CONIC_OK; i++) {
     status =
         conic_gaussian_oracle_render(job->context, &job->gaussians, &job->sparse, NULL, questions[i], &job->truths[i]);
     job->chart->quadrature[i] = job->truths[i].quadrature;

@@ -125,7 +125,7 @@ static void fill_way(const axis *of, int i_scene, int combination, cli_chart_way
   way->n_factors = of->n_factors;
   for (int i = 0, stride = 1; i < of->n_factors; i++) {
     const factor *from = &of->factors[i];
-    char *name = way->words[2 * i], *value = way->words[2 * i + 1];
+    char *name = way->words[(size_t)i * 2], *value = way->words[(size_t)i * 2 + 1];
     int n = value_at(from, 0, value, sizeof way->words[0]);
     value_at(from, combination / stride % n, value, sizeof way->words[0]);
     stride *= n;

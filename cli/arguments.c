@@ -182,7 +182,7 @@ static int is_too_large(const cli_option *option, const char *text) {
 /* Reads one value; CLI_DONE or CLI_USAGE after a message. */
 static int store_value(const cli_session *session, const cli_option *option, const char *text) {
   int is_understood = 1, is_in_range = 1;
-  const char *whole = text, *colon = option->parse_tail ? strchr(text, ':') : NULL;
+  const char *whole = text, *colon = text && option->parse_tail ? strchr(text, ':') : NULL;
   char head[64];
   wrong = NULL;
   if (colon) {

@@ -40,12 +40,12 @@ typedef struct cli_option {
   int (*parse)(const char *text, void *value); /* 0: not understood */
   int *is_given;                               /* set to 1 when the option is given; may be null */
   const char *dashes;                          /* null: one before a name of one letter, else two */
-  int may_repeat;                              /* `parse` takes every value; else the last one holds */
   const char *group;                           /* heads this option and those below, up to the next; null: goes on */
   const char *intro;                           /* of the group, one line; null: none */
   /* What may stand behind a colon of the value: a parser, and what it is handed. */
   int (*parse_tail)(const char *text, void *tail);
   void *tail;
+  int may_repeat;  /* `parse` takes every value; else the last one holds */
   int is_usual;    /* the short help has it, too */
   const char *now; /* an old spelling, which no help shows: what to write in its place. Null: it is none */
   cli_effect acts;

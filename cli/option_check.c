@@ -198,7 +198,9 @@ static int holds(const given_words *given, const char *rule, size_t length, char
   }
   const int is_ending = equals[1] == '.';
   snprintf(words, room, "%s%.*s %s%.*s", dashes, (int)n_name, rule, is_ending ? "OUT" : "", (int)n_word, equals + 1);
-  const size_t n_value = value ? strlen(value) : 0;
+  if (!value)
+    return 0;
+  const size_t n_value = strlen(value);
   return is_ending ? n_value >= n_word && strncasecmp(value + n_value - n_word, equals + 1, n_word) == 0
                    : n_value == n_word && strncmp(value, equals + 1, n_word) == 0;
 }

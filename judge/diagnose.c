@@ -188,6 +188,7 @@ static conic_status run_trials(conic_trials *trials, const conic_judged_picture 
   if (status == CONIC_OK && samples.n)
     status = conic_trials_run(trials, found, room, n_found);
   conic_diagnosis_samples_release(&samples);
+  trials->samples = NULL;
   return status;
 }
 

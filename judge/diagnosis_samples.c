@@ -56,7 +56,8 @@ static size_t cells_of_image(const conic_image *image) {
 static void choose_cells(const conic_judged_picture *picture, size_t n_wrong, size_t most_cells, uint8_t *is_chosen) {
   const size_t n = (size_t)picture->image->width * (size_t)picture->image->height;
   const size_t most_wrong = most_cells - most_cells / 4, n_cells = cells_of_image(picture->image);
-  size_t i_wrong = 0, n_chosen = 0, step = n_wrong / most_wrong + 1;
+  size_t i_wrong = 0, n_chosen = 0;
+  size_t step = n_wrong / most_wrong + 1; /* NOLINT(clang-analyzer-core.DivideZero): 8 cells at least */
   for (size_t pixel = 0; pixel < n; pixel++) {
     if (picture->classes[pixel] != CONIC_PIXEL_WRONG || i_wrong++ % step != step / 2)
       continue;

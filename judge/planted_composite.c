@@ -25,7 +25,8 @@ void conic_planted_place(const conic_planted_frame *frame, const uint16_t place[
 
 /* A pixel's place in the order of its tile of 16 × 16 (gaussians/draw/gaussian_tile.h). */
 static size_t place_in_tile(int x, int y) {
-  return (size_t)(((y >> 2 & 3) * 4 + (x >> 2 & 3)) * 16 + (x & 3) * 4 + (y & 3));
+  int place = ((y >> 2 & 3) * 4 + (x >> 2 & 3)) * 16 + (x & 3) * 4 + (y & 3);
+  return (size_t)place;
 }
 
 static conic_ray_meeting meet_plain_ray(const conic_kept_gaussian *k, float dx, float dy) {

@@ -230,10 +230,10 @@ conic_status conic_edge_spread_init(conic_context *context, const conic_camera *
                            .edge_px =
                                edge > 1.0 ? edge < CONIC_MOST_SPREAD_PX ? (size_t)edge : CONIC_MOST_SPREAD_PX : 1};
   conic_camera_rays_init(camera, &s->rays);
-  if (conic_memory_allocate_these(
-          context, CONIC_ROOM(s->filled, n), CONIC_ROOM(s->kind, 2 * n), CONIC_ROOM(s->means_before, height + 1),
-          CONIC_ROOM(s->columns, (width + 2 * CONIC_MOST_SPREAD_PX) * 2 * (size_t)conic_context_threads(context))) !=
-      CONIC_OK)
+  if (conic_memory_allocate_these(context, CONIC_ROOM(s->filled, n), CONIC_ROOM(s->kind, 2 * n),
+                                  CONIC_ROOM(s->means_before, height + 1),
+                                  CONIC_ROOM(s->columns, (width + (size_t)2 * CONIC_MOST_SPREAD_PX) * 2 *
+                                                             (size_t)conic_context_threads(context))) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   s->takes_mean = s->kind + n;
   name_receivers(s);

@@ -201,10 +201,12 @@ static conic_status receive_sides(lamp_receiving *work, conic_map_room *room, co
     status = conic_map_room_fill(room, &camera, near_z, &map);
     if (status == CONIC_OK)
       conic_parallel_for(room->context, n_items, receive_side, work);
+    work->map = NULL;
   }
   return status;
 }
 
+/* NOLINTNEXTLINE(readability-non-const-parameter): threads write to it */
 conic_status conic_lamp_receive(conic_map_room *room, const conic_lamp_point *point, float *visible) {
   size_t count = room->receivers->count, n_items = (count + TOGETHER - 1) / TOGETHER;
   lamp_receiving work = {.room = room, .visible = visible};

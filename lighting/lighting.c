@@ -215,6 +215,7 @@ static float arriving_part(const conic_light_work *l, size_t i) {
   const conic_sky_sums *sums = &l->sums;
   if (!l->options->is_sample)
     return conic_sky_sums_share(sums, i);
+  /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): there are sums of every pixel */
   return sums->takes_hidden ? 1.0f - 4.0f * (sums->facing[i] - sums->visible[i]) : 4.0f * sums->visible[i];
 }
 

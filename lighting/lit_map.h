@@ -56,5 +56,6 @@ conic_status conic_sky_sums_add(conic_map_room *room, const conic_lighting_optio
 
 /* The visible part of the light that a receiver faces: 1 where it faces none. */
 static inline float conic_sky_sums_share(const conic_sky_sums *sums, size_t i) {
+  /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): there are sums of every receiver */
   return sums->facing[i] > 0.0f ? sums->visible[i] / sums->facing[i] : 1.0f;
 }

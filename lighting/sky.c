@@ -71,7 +71,7 @@ static void sum_up_row(const conic_sky *sky, int y, const double *cosine_sine, d
   memset(sums, 0, 3 * sizeof *sums);
   for (int x = 0; x < sky->width; x++) {
     const float *color = sky->color + 3 * ((size_t)y * (size_t)sky->width + (size_t)x);
-    double u = cosine_sine[2 * x], v = cosine_sine[2 * x + 1];
+    const double u = cosine_sine[(size_t)x * 2], v = cosine_sine[(size_t)x * 2 + 1];
     const double parts[5] = {1.0, once * u, once * v, twice * (u * u - v * v), twice * (2.0 * u * v)};
     for (int c = 0; c < 3; c++)
       for (int k = 0; k < 5; k++)
@@ -104,8 +104,8 @@ static conic_status sum_up_moments(conic_sky *sky) {
     return CONIC_ERROR_MEMORY;
   for (int x = 0; x < sky->width; x++) {
     double angle = 2.0 * CONIC_PI * ((x + 0.5) / sky->width - 0.5);
-    cosine_sine[2 * x] = conic_cos(angle);
-    cosine_sine[2 * x + 1] = conic_sin(angle);
+    cosine_sine[(size_t)x * 2] = conic_cos(angle);
+    cosine_sine[(size_t)x * 2 + 1] = conic_sin(angle);
   }
   for (int y = 0; y < sky->height; y++)
     add_row_moments(sky, y, cosine_sine);

@@ -256,6 +256,7 @@ conic_status conic_oracle_compare(conic_context *context, const conic_reference 
 }
 
 conic_status conic_oracle_judge(conic_context *context, const conic_reference *reference,
+                                /* NOLINTNEXTLINE(readability-non-const-parameter): filled in */
                                 const conic_oracle_judging *judging, const conic_image *image, uint8_t *classes,
                                 conic_oracle_judgement *judgement) {
   conic_oracle_judging own;

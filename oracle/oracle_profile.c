@@ -226,8 +226,9 @@ conic_status conic_oracle_profile_create(conic_context *context, oracle_view *vi
     for (int high = low; high < LEVELS; high++)
       for (int i = 0; i < RADII * NODES; i++) {
         const double share[2] = {level_share(low), level_share(high)};
-        profile->nodes[low][high][i / NODES][i % NODES] =
-            node(&w, share, profile->narrowing, (i / NODES) / (RADII - 1.0), node_directions[i % NODES]);
+        const int radius = i / NODES;
+        profile->nodes[low][high][radius][i % NODES] =
+            node(&w, share, profile->narrowing, radius / (RADII - 1.0), node_directions[i % NODES]);
       }
   }
   make_smooth(&w, profile);

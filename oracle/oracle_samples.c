@@ -7,7 +7,8 @@ static const double shortest_mean = 0.1;
 
 /* How far sample i is from the centre, in half samples, squared. */
 static double distance(int i, int n) {
-  double dx = 2 * (i % n) + 1 - n, dy = 2 * (i / n) + 1 - n;
+  const int row = i / n;
+  double dx = 2 * (i % n) + 1 - n, dy = 2 * row + 1 - n;
   return dx * dx + dy * dy;
 }
 

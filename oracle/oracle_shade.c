@@ -151,6 +151,7 @@ static void all_around_range(const conic_lighting *lighting, const oracle_mixtur
   normalise(up);
   conic_oracle_mean_along(mixture, up, upwards);
   range[0] = range[1] = 0.5 * (sky + ground);
+  /* NOLINTNEXTLINE(readability-suspicious-call-argument): the sum is the range */
   add_scaled(range, 0.5 * (sky - ground), upwards);
 }
 

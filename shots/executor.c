@@ -29,6 +29,7 @@ static conic_status agree_alone(void *data, conic_status status) {
   return status;
 }
 
+/* NOLINTNEXTLINE(readability-non-const-parameter): others hear a message */
 static int worst_alone(void *data, int code, char *message, size_t room) {
   (void)data, (void)message, (void)room;
   return code;

@@ -123,9 +123,11 @@ static conic_status light_whole(map_drawer *drawer, const conic_lighter *lighter
     if (status == CONIC_OK)
       send_receivers(work->executor, image);
   }
-  return status == CONIC_OK ? conic_image_light_shared(lighter->context, lighter->casters, look->camera,
-                                                       lighter->render, lighter->options, drawer->sharing, image)
-                            : status;
+  if (status == CONIC_OK)
+    status = conic_image_light_shared(lighter->context, lighter->casters, look->camera, lighter->render,
+                                      lighter->options, drawer->sharing, image);
+  drawer->sharing = NULL;
+  return status;
 }
 
 static conic_status light(const conic_shot_stage *stage, const conic_look *look, conic_image *image) {

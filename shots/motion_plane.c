@@ -116,7 +116,7 @@ static void follow_row(void *data, size_t y) {
     size_t input = f->moves ? conic_source_input_of(f->work->source, id[i]) : 0;
     for (int k = 0; k < N_MOMENTS; k++) {
       memcpy(then, now, sizeof then);
-      if (input < f->n_inputs) {
+      if (f->moves && input < f->n_inputs) {
         apply((const double(*)[4])f->moves[input][0], now, rest);
         apply((const double(*)[4])f->moves[input][k + 1], rest, then);
       }

@@ -49,10 +49,6 @@ int conic_work_has_picture(const conic_shot_work *work) {
   return work->units <= CONIC_UNITS_FRAMES || work->executor->index == 0;
 }
 
-conic_status conic_work_agree(const conic_shot_work *work, conic_status status) {
-  return work->executor->agree(work->executor->data, status);
-}
-
 void conic_work_trace(const conic_shot_work *work, const char *kind, const char *name, uint64_t number,
                       conic_moment since, uint64_t bytes) {
   work->executor->trace(work->executor->data, kind, name, number, since, bytes);

@@ -8,7 +8,7 @@
 enum { CONIC_SHOT_VERSION = 1 };
 
 /* "scene", "texture" …; null for a number that is none. */
-const char *conic_shot_role_name(conic_shot_role role);
+const char *conic_shot_role_name(conic_shot_role value);
 
 typedef struct conic_text {
   conic_context *context; /* null: there is no more room than `room`, at `bytes` */

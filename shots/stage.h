@@ -86,7 +86,10 @@ enum { CONIC_MOST_STAGES = 7 };
 /* Whether this process has the picture at the end. */
 int conic_work_has_picture(const conic_shot_work *work);
 /* executor->agree. */
-conic_status conic_work_agree(const conic_shot_work *work, conic_status status);
+static inline conic_status conic_work_agree(const conic_shot_work *work, conic_status status) {
+  conic_status of_all = work->executor->agree(work->executor->data, status);
+  return status != CONIC_OK ? status : of_all;
+}
 /* executor->trace. */
 void conic_work_trace(const conic_shot_work *work, const char *kind, const char *name, uint64_t number,
                       conic_moment since, uint64_t bytes);

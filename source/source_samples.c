@@ -44,7 +44,8 @@ static void add_picture(conic_splats *samples, const conic_camera *camera, const
   const float *z = image->planes[CONIC_PLANE_Z], *normal = image->planes[CONIC_PLANE_NORMAL];
   const uint32_t *id = image->planes[CONIC_PLANE_ID];
   for (int i = 0; i < SIDE * SIDE; i++) {
-    double dx = (i % SIDE + 0.5 - camera->cx) / camera->fx, dy = (i / SIDE + 0.5 - camera->cy) / camera->fy;
+    const int row = i / SIDE;
+    double dx = (i % SIDE + 0.5 - camera->cx) / camera->fx, dy = (row + 0.5 - camera->cy) / camera->fy;
     if (id[i] != CONIC_NO_ID)
       add_disc(samples, camera, dx, dy, (double)z[i], normal + 3 * (size_t)i);
   }

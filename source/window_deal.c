@@ -41,9 +41,11 @@ static conic_status cut_into_cells(conic_context *context, const conic_dealing *
                                   CONIC_ROOM(grid->first[axis], (size_t)length + 1)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   grid->cell[axis][0] = 1;
-  for (size_t i = 0; i < d->n; i++)
-    grid->cell[axis][d->samples * window_begin(&d->list[i], axis)] =
-        grid->cell[axis][d->samples * window_end(&d->list[i], axis)] = 1;
+  for (size_t i = 0; i < d->n; i++) {
+    const size_t samples = (size_t)d->samples;
+    grid->cell[axis][samples * (size_t)window_begin(&d->list[i], axis)] =
+        grid->cell[axis][samples * (size_t)window_end(&d->list[i], axis)] = 1;
+  }
   size_t n = 0;
   for (int at = 0; at < length; at++) {
     if (grid->cell[axis][at])

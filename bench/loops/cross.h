@@ -53,11 +53,13 @@ typedef struct cross_desk {
 typedef void cross_run(const cross_tables *tables, cross_desk *desk);
 
 /* What runs a slot by one call; `d` is the desk there. */
+/* NOLINTBEGIN(bugprone-macro-parentheses): a type and a statement, which stand bare */
 #define CROSS_RUN(name, of_desk, call)                                                                                 \
   static void name(const cross_tables *tables, cross_desk *desk) {                                                     \
     of_desk *d = (of_desk *)(void *)desk;                                                                              \
     call;                                                                                                              \
   }
+/* NOLINTEND(bugprone-macro-parentheses) */
 
 /* A slot: its name and what comes before it in a line, what runs it, and what a time is divided by. */
 typedef struct cross_slot {
@@ -77,7 +79,7 @@ static inline void *cross_calloc(size_t bytes) {
 /* Zeroed, of the desk's from now on. */
 static inline void *cross_room(cross_desk *desk, const char *name, size_t bytes) {
   cross_arena *a = &desk->arenas[desk->n_arenas++];
-  size_t whole = conic_memory_rounded(bytes + 2 * CROSS_GUARD);
+  size_t whole = conic_memory_rounded(bytes + (size_t)2 * CROSS_GUARD);
   *a = (cross_arena){.name = name, .held = cross_calloc(whole + 64), .bytes = bytes, .compared = bytes};
   a->memory = (unsigned char *)a->held + (64 - (uintptr_t)a->held % 64);
   a->inside = a->memory + CROSS_GUARD;

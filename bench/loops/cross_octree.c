@@ -48,7 +48,8 @@ static void lay_sheet(cover_desk *s) {
   discs->error = s->numbers[12];
   discs->count = N_DISCS;
   for (size_t k = 0; k < N_DISCS; k++) {
-    float x = (float)(k % 32) / 16.0f - 1.0f, y = (float)(k / 32) / 16.0f - 1.0f;
+    size_t row = k / 32;
+    float x = (float)(k % 32) / 16.0f - 1.0f, y = (float)row / 16.0f - 1.0f;
     int is_hole = x * x + y * y < 0.09f;
     const float place[3] = {is_hole ? 2.0f + x : x, y, 0.05f * x * y};
     for (int axis = 0; axis < 3; axis++) {

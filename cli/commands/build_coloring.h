@@ -20,7 +20,7 @@ typedef struct cli_coloring {
   CLI_COLOR_OPTIONS(&(coloring)->options), {                                                                           \
     "up", CLI_PARSED, (coloring)->options.up, "DIR",                                                                   \
         "what points up, for --color-by height and in a .lpc: x, y, z, -x … or X,Y,Z [y; z for surveys]",              \
-        .parse = cli_parse_up, .is_given = &(coloring)->is_up_given, .acts.with = up_with                              \
+        .parse = cli_parse_up, .is_given = &(coloring)->is_up_given, .acts.with = (up_with)                            \
   }
 
 void cli_coloring_init(cli_coloring *coloring);

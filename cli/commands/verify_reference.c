@@ -11,7 +11,7 @@ conic_status cli_reference_check_size(const char *path, const conic_image *image
 /* A picture from a file has the names of the choice, where the oracle has indices. */
 static void name_reference(const conic_source_choice *choice, conic_reference *r) {
   const uint32_t *names = choice->ids;
-  size_t n_names = choice->drawing.splats->count;
+  size_t n_names = choice->drawing.splats ? choice->drawing.splats->count : 0;
   double *ids = r->planes[CONIC_PLANE_ID];
   for (size_t i = 0; names && i < r->n_pixels; i++)
     if (ids[i] < (double)n_names)

@@ -102,7 +102,7 @@ conic_status cli_judge_report(cli_session *session, cli_judge_job *job);
 
 /* The verdict for people, and what --json says, of a cli_judge_job. */
 void cli_judge_print(const cli_judge_job *job);
-void cli_judge_members(cli_json *json, const void *job);
+void cli_judge_members(cli_json *json, const void *cookie);
 
 /* What a fault's value is and may be, and what a contribution is, in one line each. */
 void cli_judge_describe(const cli_judge_job *job, const conic_oracle_fault *fault, char *text, size_t room);

@@ -23,7 +23,7 @@ static conic_status stack_pictures(cli_session *session, const conic_image *abov
     for (int x = 0; x < width; x++) {
       float *pixel = to + 4 * ((size_t)y * (size_t)width + (size_t)x);
       if (x < from->width)
-        memcpy(pixel, row + 4 * x, 4 * sizeof *pixel);
+        memcpy(pixel, row + (size_t)x * 4, 4 * sizeof *pixel);
       pixel[3] = 1.0f;
     }
   }

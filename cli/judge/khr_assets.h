@@ -43,7 +43,7 @@ enum {
   KHR_LINEAR = 512     /* of the other colour space */
 };
 
-typedef struct khr_asset {
+typedef struct khr_asset { /* NOLINT(clang-analyzer-optin.performance.Padding): in the order of the tables */
   const char *name, *about;
   const char *clause; /* the heading in the extension's text */
   int level;          /* 0: it must be refused */

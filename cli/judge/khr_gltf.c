@@ -417,13 +417,13 @@ static conic_status write_file(suite_files *suite, khr_writer *w) {
                                (uint32_t)w->json.n, 0x4e4f534a, (uint32_t)w->n_bytes,
                                0x004e4942};
     for (int i = 0; i < 7; i++)
-      conic_store_32(heads + 4 * i, words[i]);
+      conic_store_32(heads + (size_t)i * 4, words[i]);
     const void *const parts[] = {heads, w->json.text, heads + 20, w->bytes};
     return write_bytes(suite, path, parts, (const size_t[]){20, w->json.n, 8, w->n_bytes}, 4, is_cut);
   }
   const void *const json = w->json.text, *const bytes = w->bytes;
   conic_status status = write_bytes(suite, path, &json, &w->json.n, 1, is_cut);
-  strcpy(strrchr(path, '.'), ".bin");
+  memcpy(strrchr(path, '.'), ".bin", sizeof ".bin");
   return status == CONIC_OK ? write_bytes(suite, path, &bytes, &w->n_bytes, 1, 0) : status;
 }
 

@@ -51,7 +51,7 @@ int cli_suite_is_right(const suite_run *run);
 
 /* The table, and what --json says, of a suite_run. */
 void cli_suite_print(const suite_run *run);
-void cli_suite_members(cli_json *json, const void *run);
+void cli_suite_members(cli_json *json, const void *cookie);
 /* JUnit's XML, as CI systems take it. Errors: as conic_output_open and _end. */
 conic_status cli_suite_write_junit(const suite_run *run);
 

@@ -167,9 +167,9 @@ static conic_status make_least(conic_context *context, conic_gaussians *gaussian
   enum { COLUMNS = 11, ROWS = 5, N = COLUMNS * ROWS };
   suite_one few[N];
   for (int i = 0; i < N; i++) {
-    int column = i % COLUMNS, row = i / COLUMNS, step = column - COLUMNS / 2;
+    int column = i % COLUMNS, row = i / COLUMNS, step = column - COLUMNS / 2, up = row - ROWS / 2;
     double off = column == 0 ? -1e-2 : column == COLUMNS - 1 ? 1e-2 : 2e-7 * step;
-    few[i] = (suite_one){.mean = {(3 * step + 0.5) / 8.0, (3 * (row - ROWS / 2) + 0.5) / 8.0, 0.0},
+    few[i] = (suite_one){.mean = {(3 * step + 0.5) / 8.0, (3 * up + 0.5) / 8.0, 0.0},
                          ROUND(0.02 + 0.02 * row),
                          .opacity = (1.0 + off) / 255.0,
                          .color = {40.0, 20.0, 10.0}};
@@ -368,9 +368,9 @@ conic_status cli_suite_make(conic_context *context, const suite_scene *scene, co
 
 /* --- the table --- */
 
-#define BLURRED SUITE_OF_ELLIPSES | SUITE_OF_RAYS
-#define SOLIDS BLURRED | SUITE_OF_FAINTER_ELLIPSES
-#define DISCS SUITE_OF_DISCS | SUITE_OF_RAYS
+#define BLURRED (SUITE_OF_ELLIPSES | SUITE_OF_RAYS)
+#define SOLIDS (BLURRED | SUITE_OF_FAINTER_ELLIPSES)
+#define DISCS (SUITE_OF_DISCS | SUITE_OF_RAYS)
 
 /* How a scene is seen: small pictures that are not square, and whose sides are no multiples of a tile. */
 #define SMALL .width = 36, .height = 20, .center = {18.0, 10.0}
@@ -381,8 +381,8 @@ conic_status cli_suite_make(conic_context *context, const suite_scene *scene, co
 #define AT_ORIGIN .rotation = {1.0, 0.0, 0.0, 0.0}, .focal = {32.0, 32.0}
 #define AS_IT_IS .rotation = {1.0, 0.0, 0.0, 0.0}
 #define OPAQUE .opacity = {0.3, 0.95}
-#define EVERYWHERE .drawn_by = SOLIDS | DISCS
-#define FREE_CENTER .drawn_by = SOLIDS | DISCS | SUITE_WITH_CENTER
+#define EVERYWHERE .drawn_by = (SOLIDS | SUITE_OF_DISCS)
+#define FREE_CENTER .drawn_by = (SOLIDS | SUITE_OF_DISCS | SUITE_WITH_CENTER)
 #define STAGE(name) .stage = CONIC_GAUSSIAN_STAGE_##name
 #define TURNED .rotation = {8.0, 2.0, -1.0, 1.0}, .eye = {-1.125, -1.75, -3.5}, .focal = {36.0, 36.0}
 

@@ -41,7 +41,7 @@ typedef struct suite_recipe {
 
 struct khr_asset;
 
-typedef struct suite_scene {
+typedef struct suite_scene { /* NOLINT(clang-analyzer-optin.performance.Padding): in the order of the tables */
   const char *name, *about;
   int level; /* 1 to SUITE_LEVELS */
   int width, height;

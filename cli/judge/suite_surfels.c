@@ -21,8 +21,9 @@ static void put_surfel_sheet(conic_splats *splats, size_t first, const double fr
                              const double down[3]) {
   for (size_t i = 0; i < 35; i++) {
     double center[3], u[3], v[3];
+    const size_t row = i / 7;
     for (int axis = 0; axis < 3; axis++) {
-      center[axis] = from[axis] + along[axis] * (double)(i % 7) + down[axis] * (double)(i / 7);
+      center[axis] = from[axis] + along[axis] * (double)(i % 7) + down[axis] * (double)row;
       u[axis] = 0.7 * along[axis];
       v[axis] = 0.7 * down[axis];
     }

@@ -134,7 +134,7 @@ static conic_status list_share_pieces(cli_points_share *share) {
   const cli_points_cut *from = &share->cuts[index], *to = from + 1;
   share->n = 0;
   conic_memory_release(share->session->context, share->pieces);
-  size_t most = (size_t)(to->input - from->input + 1);
+  size_t most = (size_t)(to->input - from->input) + 1;
   share->pieces = conic_memory_allocate_zeroed(share->session->context, most, sizeof *share->pieces);
   if (!share->pieces)
     return CONIC_ERROR_MEMORY;

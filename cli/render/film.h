@@ -11,6 +11,6 @@ int cli_film_check(const cli_session *session, cli_render_job *job);
 int cli_parse_film(const char *text, void *value);
 
 /* Adds a frame, where there is a film. Errors: MEMORY, IO. */
-conic_status cli_film_add(cli_session *session, cli_render_job *job, const conic_image *image);
+conic_status cli_film_add(cli_session *session, cli_render_job *job, const conic_image *drawn);
 /* Completes it, or drops it unless `status` is OK; returns that, or what went wrong. */
 conic_status cli_film_end(cli_session *session, cli_render_job *job, conic_status status);

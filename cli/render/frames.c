@@ -130,7 +130,7 @@ static int check_view_names(const cli_session *session, const cli_render_job *jo
     qsort(names, (size_t)n, sizeof *names, compare_frame_names);
   else
     answer = cli_error(CLI_RESOURCE, "%s: out of memory", session->command);
-  for (int i = 1; i < n && answer == CLI_DONE; i++)
+  for (int i = 1; i < n && is_there && answer == CLI_DONE; i++)
     if (strcmp(names[i - 1], names[i]) == 0)
       answer = cli_usage("%s: two views would be written to %s; number them, as by %%04d", session->command, names[i]);
   free_names(names, n);

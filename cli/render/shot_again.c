@@ -206,7 +206,9 @@ static int read_named_shot(cli_shot_again *again) {
 int cli_shot_again_parse(cli_session *session, int argc, char **argv, cli_render_parser *parse, cli_render_job *job) {
   cli_shot_again *again = calloc(1, sizeof *again);
   cli_render_job first = *job;
-  int answer = again ? CLI_DONE : cli_error(CLI_RESOURCE, "render: out of memory");
+  int answer = again ? CLI_DONE : CLI_RESOURCE;
+  if (!again)
+    cli_error(answer, "render: out of memory");
   if (answer == CLI_DONE) {
     again->argc = argc;
     again->argv = argv;

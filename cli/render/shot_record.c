@@ -189,7 +189,7 @@ static char *name_shot(const cli_render_job *job, int i_frame) {
   snprintf(stem, n + 1, "%.*s.json", (int)(n - n_ending), path);
   name = cli_frame_name(job, stem, i_frame);
   if (name && (whole = realloc(name, strlen(name) + n_ending + 1)))
-    strcpy(whole + strlen(whole) - strlen(".json"), ending);
+    memcpy(whole + strlen(whole) - strlen(".json"), ending, sizeof ending);
   else
     free(name);
   free(stem);

@@ -105,10 +105,6 @@ conic_status cli_shot_begin(const cli_render_job *job, conic_shot_work *work) {
   return status;
 }
 
-conic_status cli_units_agree(const cli_render_job *job, conic_status status) {
-  return job->executor->agree(job->executor->data, status);
-}
-
 void cli_units_broadcast(const cli_render_job *job, void *bytes, size_t n_bytes) {
   job->executor->broadcast(job->executor->data, bytes, n_bytes);
 }

@@ -29,8 +29,12 @@ int cli_units_make_picture(const cli_session *session, const cli_render_job *job
  * conic_shot_work_begin; the work then still says who draws. */
 conic_status cli_shot_begin(const cli_render_job *job, conic_shot_work *work);
 
-/* Collective, where anything is shared: what all came to. Alone, the status itself. */
-conic_status cli_units_agree(const cli_render_job *job, conic_status status);
+/* Collective, where anything is shared: what all came to. Alone, the status itself. Here, so that who reads a caller's
+ * code alone sees that OK means its own OK, too. */
+static inline conic_status cli_units_agree(const cli_render_job *job, conic_status status) {
+  conic_status of_all = job->executor->agree(job->executor->data, status);
+  return status != CONIC_OK ? status : of_all;
+}
 /* The same: the first process's bytes come to all. */
 void cli_units_broadcast(const cli_render_job *job, void *bytes, size_t n_bytes);
 

@@ -39,7 +39,7 @@ int cli_parse_lamp(const char *text, cli_render_job *job) {
   int i = own->n_lamps, is_rectangle = 0;
   if (i == CONIC_MAX_LAMPS || strlen(text) >= sizeof copy)
     return cli_because(i == CONIC_MAX_LAMPS ? "there are 8 lamps already" : "it is too long");
-  strcpy(copy, text);
+  memcpy(copy, text, strlen(text) + 1);
   int n = split_words(copy, N_PARTS, parts);
   conic_lamp *lamp = &own->lamps[own->n_lamps++];
   double size[2] = {0.0, 0.0};

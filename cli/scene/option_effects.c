@@ -144,7 +144,7 @@ static void know_source(cli_render_job *job) {
   const cli_facts traits[] = {F(FACES), F(EDGES), F(RAW),
                               F(TEXT),  F(ALPHA), F(FRACTIONS)}; /* as conic_source_trait has its bits */
   for (int i = 0; i < 6; i++)
-    own->possible &= ~when(job->source->no_traits >> i & 1, traits[i]);
+    own->possible &= ~when((job->source->no_traits >> i & 1u) != 0, traits[i]);
   if (job->is_transparent && own->possible & F(NODES) && !has_faint_points(job))
     own->possible &= ~F(ALPHA);
   own->possible &=

@@ -39,7 +39,7 @@ typedef struct cli_stereo {
 
 enum { CLI_MOST_PLACES = 64, CLI_PLACE_ROOM = 16384 };
 
-typedef struct cli_render_job {
+typedef struct cli_render_job { /* NOLINT(clang-analyzer-optin.performance.Padding): there is one, read by people */
   /* The picture: what the options say of it, and for each frame what is open (cli/render/fill_shot.h). */
   conic_shot shot;
 

@@ -56,7 +56,7 @@ static conic_status write_tiles(sheet_rows *rows, conic_tiff *tiff) {
       size_t n = width - x < BAND ? width - x : BAND;
       memset(tile, 0xff, (size_t)BAND * BAND * 4);
       for (size_t row = 0; row < BAND; row++)
-        memcpy(tile + 4 * BAND * row, rows->rgba + 4 * (row * width + x), 4 * n);
+        memcpy(tile + 4 * row * BAND, rows->rgba + 4 * (row * width + x), 4 * n);
       status = conic_tiff_append(tiff, tile);
     }
   }

@@ -26,7 +26,7 @@ static void put(package *p, const char *from, const char *end) {
   size_t n = (size_t)(end - from);
   if (p->status == CONIC_OK)
     p->status = conic_memory_reserve(p->context, &p->text, p->n_text, p->n_text + n, &p->room, 1);
-  if (p->status != CONIC_OK)
+  if (p->status != CONIC_OK || !from)
     return;
   memcpy(p->text + p->n_text, from, n);
   p->n_text += n;
@@ -75,7 +75,7 @@ static void put_tag(package *p, const char *tag, const char *end, unsigned i_fil
     if ((value = find_value(tag, end, names[i]))) { /* a tag has one of them, or an id and a pid in this order */
       char number[32];
       unsigned long own = strtoul(value, NULL, 10);
-      int n = snprintf(number, sizeof number, "%lu", own + NUMBERS * (i == 3 ? i_path : i_file));
+      int n = snprintf(number, sizeof number, "%lu", own + (unsigned long)NUMBERS * (i == 3 ? i_path : i_file));
       if (own >= NUMBERS && p->status == CONIC_OK)
         p->status = conic_fail(p->context, CONIC_ERROR_UNSUPPORTED, "%s: the number %lu is too large", p->name, own);
       put(p, tag, value);
@@ -112,7 +112,7 @@ static const char *find_resources(package *p, const char *text, const char **end
 static void put_models(package *p) {
   char name[CONIC_ZIP_NAME];
   const char *begin, *end;
-  size_t n, n_root, at = 0;
+  size_t n, n_root = 0, at = 0;
   unsigned char *relations, *root, *other;
   int has_relations = take_file(p, "_rels/.rels", &relations, &n);
   while (has_relations && conic_zip_next(&p->zip, &at, name))

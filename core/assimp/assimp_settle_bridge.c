@@ -1,6 +1,7 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -21,12 +22,12 @@ static void set_limit(int resource, uint64_t most) {
 
 /* Address space that is taken already (a sanitizer takes much); 0 where it is not known. */
 static uint64_t own_address_space(void) {
-  unsigned long long pages = 0;
+  char pages[32] = "0";
   FILE *file = fopen("/proc/self/statm", "r");
-  int n = file ? fscanf(file, "%llu", &pages) : 0;
+  int is_known = file && fgets(pages, sizeof pages, file);
   if (file)
     fclose(file);
-  return n == 1 ? pages * (uint64_t)sysconf(_SC_PAGESIZE) : 0;
+  return is_known ? strtoull(pages, NULL, 10) * (uint64_t)sysconf(_SC_PAGESIZE) : 0;
 }
 
 void conic_assimp_settle(conic_assimp_request *request) {

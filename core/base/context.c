@@ -191,7 +191,7 @@ static void log_arguments(conic_context *context, conic_log_level level, const c
   context->options.log(context->options.log_cookie, level, message);
 }
 
-conic_status conic_fail(conic_context *context, conic_status status, const char *format, ...) {
+conic_status(conic_fail)(conic_context *context, conic_status status, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
   log_arguments(context, CONIC_LOG_ERROR, format, arguments);

@@ -15,6 +15,9 @@
 /* Logs the formatted line as an error and returns `status`: `return conic_fail(context, CONIC_ERROR_INPUT, "%s: …",
  * …);` %s %d %u %zu %lld %llu %g work as in printf. */
 conic_status conic_fail(conic_context *context, conic_status status, const char *format, ...) CONIC_AS_PRINTF(3, 4);
+#ifdef __clang_analyzer__ /* which then knows that it fails */
+#define conic_fail(context, status, ...) ((void)(conic_fail)(context, status, __VA_ARGS__), (status))
+#endif
 
 /* Logs at another level. */
 void conic_log(conic_context *context, conic_log_level level, const char *format, ...) CONIC_AS_PRINTF(3, 4);

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-conic_status conic_team_agree(const conic_team *team, conic_status status) {
+conic_status conic_team_status(const conic_team *team, conic_status status) {
   if (!team)
     return status;
   size_t sizes[CONIC_MOST_IN_TEAM];

@@ -33,7 +33,13 @@ enum { CONIC_MOST_IN_TEAM = 1 << 12 };
 
 /* Collective; returns `status` where the team is null. OK if all processes have OK. Else a process that failed keeps
  * its own status, and the others get CANCELLED, without a message. */
-conic_status conic_team_agree(const conic_team *team, conic_status status);
+conic_status conic_team_status(const conic_team *team, conic_status status);
+
+/* The same, by which who reads a caller's code alone sees that OK means its own OK, too. */
+static inline conic_status conic_team_agree(const conic_team *team, conic_status status) {
+  conic_status of_all = conic_team_status(team, status);
+  return status != CONIC_OK ? status : of_all;
+}
 
 /* Collective: gathers n_bytes of each process side by side, for which `all` has room; it may be `bytes`. Returns how
  * many bytes they are together. */

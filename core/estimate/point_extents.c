@@ -104,6 +104,7 @@ static void space_slots(void *data, size_t begin, size_t end) {
 }
 
 conic_status conic_estimate_spacings(conic_context *context, const conic_neighbourhood *neighbourhood,
+                                     /* NOLINTNEXTLINE(readability-non-const-parameter): threads write to it */
                                      double *spacings) {
   spacing_work work = {neighbourhood, spacings};
   const conic_team_column column = {spacings, sizeof *spacings};
@@ -321,7 +322,7 @@ static conic_status find_median(conic_context *context, const spread_work *work,
                                 double (*value_at)(const spread_work *work, size_t slot), double *median,
                                 double *part) {
   size_t n_slots = work->neighbourhood->tree.n_slots, stride = 1 + n_slots / MEDIAN_SAMPLES, n = 0;
-  double *sorted = conic_memory_allocate(context, 2 * MEDIAN_SAMPLES, sizeof *sorted);
+  double *sorted = conic_memory_allocate(context, (size_t)2 * MEDIAN_SAMPLES, sizeof *sorted);
   if (!sorted)
     return CONIC_ERROR_MEMORY;
   for (size_t slot = 0; slot < n_slots; slot += stride)
@@ -382,6 +383,7 @@ static conic_status bound_by_neighbours(conic_context *context, spread_work *wor
 }
 
 conic_status conic_estimate_from_neighbours(conic_context *context, conic_estimate *estimate,
+                                            /* NOLINTNEXTLINE(readability-non-const-parameter): threads write to it */
                                             const conic_neighbourhood *neighbourhood, double *spacings) {
   spread_work work = {estimate, neighbourhood, spacings, HUGE_VAL, HUGE_VAL, 0};
   double part;

@@ -197,6 +197,7 @@ double conic_scatter_reach(const conic_neighbourhood *neighbourhood, size_t slot
   const uint32_t *list = conic_neighbourhood_of(neighbourhood, slot);
   double sorted[CONIC_MAX_NEIGHBOURS + 1];
   size_t n = 0;
+  sorted[0] = 0.0;
   for (size_t i = 0; i <= neighbourhood->n_neighbours; i++) {
     size_t other = i ? list[i - 1] : slot, at = n;
     if (!is_listed(neighbourhood, other))

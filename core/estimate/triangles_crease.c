@@ -155,7 +155,7 @@ static void find_sharp(void *data, size_t begin, size_t end) {
         if (edge >= 0 && fan.group[i] != fan.group[j])
           join_groups(&fan, fan.group[i], fan.group[j]);
         size.n_weak += cosine < c->half_cosine && cosine >= c->cosine;
-        if (cosine >= c->cosine)
+        if (edge < 0 || cosine >= c->cosine)
           continue;
         c->sharp[fan.corners[i]] |= (uint8_t)(1 << edge);
         size.n_sharp++;

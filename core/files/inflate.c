@@ -23,6 +23,7 @@ static void release_zlib(voidpf cookie, voidpf pointer) {
   conic_memory_release(cookie, pointer);
 }
 
+/* NOLINTNEXTLINE(readability-non-const-parameter): zlib writes to it */
 size_t conic_inflate(conic_deflate_wrapping wrapping, const unsigned char *from, size_t n_from, unsigned char *to,
                      size_t n_bytes, int *is_whole) {
   unsigned char rest[4096];

@@ -28,9 +28,9 @@ conic_sha256_mix_blocks(uint32_t state[8], const uint32_t constants[64], const u
     const __m128i abef_before = abef, cdgh_before = cdgh;
     __m128i w[4];
     for (int i = 0; i < 4; i++)
-      w[i] = _mm_shuffle_epi8(_mm_loadu_si128((const __m128i *)(blocks + 16 * i)), big_endian);
+      w[i] = _mm_shuffle_epi8(_mm_loadu_si128((const __m128i *)(blocks + (size_t)i * 16)), big_endian);
     for (int i = 0; i < 16; i++) {
-      __m128i added = _mm_add_epi32(w[i & 3], _mm_loadu_si128((const __m128i *)(constants + 4 * i)));
+      __m128i added = _mm_add_epi32(w[i & 3], _mm_loadu_si128((const __m128i *)(constants + (size_t)i * 4)));
       cdgh = _mm_sha256rnds2_epu32(cdgh, abef, added);
       abef = _mm_sha256rnds2_epu32(abef, cdgh, _mm_shuffle_epi32(added, 0x0E));
       __m128i next = _mm_add_epi32(_mm_sha256msg1_epu32(w[i & 3], w[(i + 1) & 3]),
@@ -74,9 +74,9 @@ __attribute__((target("+crypto"))) void conic_sha256_mix_blocks(uint32_t state[8
     const uint32x4_t abcd_before = abcd, efgh_before = efgh;
     uint32x4_t w[4];
     for (int i = 0; i < 4; i++)
-      w[i] = vreinterpretq_u32_u8(vrev32q_u8(vld1q_u8(blocks + 16 * i)));
+      w[i] = vreinterpretq_u32_u8(vrev32q_u8(vld1q_u8(blocks + (size_t)i * 16)));
     for (int i = 0; i < 16; i++) {
-      const uint32x4_t added = vaddq_u32(w[i & 3], vld1q_u32(constants + 4 * i)), abcd_now = abcd;
+      const uint32x4_t added = vaddq_u32(w[i & 3], vld1q_u32(constants + (size_t)i * 4)), abcd_now = abcd;
       abcd = vsha256hq_u32(abcd, efgh, added);
       efgh = vsha256h2q_u32(efgh, abcd_now, added);
       w[i & 3] = vsha256su1q_u32(vsha256su0q_u32(w[i & 3], w[(i + 1) & 3]), w[(i + 2) & 3], w[(i + 3) & 3]);

@@ -123,7 +123,7 @@ static conic_status read_path(material_reader *reader, conic_texture_wrap *wrap,
     return CONIC_OK;
   if (length > CONIC_INPUT_LONGEST_WORD)
     return conic_input_wrong(&reader->input, "a picture's name is too long");
-  if (conic_input_find(&reader->input, name, length, path, 2 * CONIC_INPUT_LONGEST_WORD))
+  if (conic_input_find(&reader->input, name, length, path, (size_t)2 * CONIC_INPUT_LONGEST_WORD))
     return CONIC_OK;
   conic_log(reader->input.context, CONIC_LOG_WARNING, "%s: the texture %s is not there, and is left out (line %llu)",
             reader->input.name, path, (unsigned long long)reader->input.line);

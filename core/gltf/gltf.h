@@ -181,6 +181,9 @@ conic_status conic_gltf_check_extensions(const conic_gltf *gltf);
 
 /* "FILE: what is wrong". */
 conic_status conic_gltf_wrong(const conic_gltf *gltf, const char *format, ...) CONIC_AS_PRINTF(2, 3);
+#ifdef __clang_analyzer__ /* which then knows that it fails */
+#define conic_gltf_wrong(...) ((void)(conic_gltf_wrong)(__VA_ARGS__), CONIC_ERROR_INPUT)
+#endif
 void conic_gltf_warn(const conic_gltf *gltf, const char *format, ...) CONIC_AS_PRINTF(2, 3);
 
 /* Whether a number of the JSON is a whole one below `end`, of which there are fewer than 2⁵³. */
@@ -203,7 +206,7 @@ typedef struct conic_gltf_bytes {
 } conic_gltf_bytes;
 conic_status conic_gltf_open_view(conic_gltf *gltf, double number, conic_gltf_bytes *view);
 /* Of a part of a buffer. */
-conic_status conic_gltf_open_part(conic_gltf *gltf, double buffer, double offset, double length,
+conic_status conic_gltf_open_part(conic_gltf *gltf, double number, double offset, double length,
                                   conic_gltf_bytes *part);
 /* Unpacks a view of EXT_meshopt_compression into its `own`. */
 conic_status conic_gltf_unpack(conic_gltf *gltf, conic_gltf_view *view, size_t n_bytes);
@@ -227,7 +230,7 @@ typedef struct conic_gltf_array {
 
 /* Opens an accessor, with sparse values put in. The caller closes it, on failure too. Errors: INPUT, UNSUPPORTED,
  * MEMORY. */
-conic_status conic_gltf_open_array(conic_gltf *gltf, double accessor, conic_gltf_array *array);
+conic_status conic_gltf_open_array(conic_gltf *gltf, double number, conic_gltf_array *array);
 void conic_gltf_close_array(const conic_gltf *gltf, conic_gltf_array *array);
 
 /* Component k of item i; normalized integers are -1 or 0 to 1. */

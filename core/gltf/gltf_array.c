@@ -129,6 +129,6 @@ double conic_gltf_value(const conic_gltf_array *array, size_t i, int k) {
                                                         : (double)bits;
   if (!array->is_normalized)
     return value;
-  value /= most[array->component - CONIC_GLTF_INT8];
+  value /= most[array->component - CONIC_GLTF_INT8]; /* NOLINT(clang-analyzer-core.*): of two bytes at most */
   return value > -1.0 ? value : -1.0;
 }

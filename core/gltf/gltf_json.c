@@ -69,6 +69,7 @@ static const field texture_fields[] = {{"sampler", NUMBER, AT(texture, sampler)}
                                        {"extensions/KHR_texture_basisu/source", NUMBER, AT(texture, basisu)},
                                        {NULL}};
 
+/* NOLINTBEGIN(bugprone-macro-parentheses): literals and members, which stand bare */
 #define TEXTURE(path, use)                                                                                             \
   {path "/index", NUMBER, AT(material, use.texture)}, {path "/texCoord", NUMBER, AT(material, use.set)},               \
       {path "/extensions/KHR_texture_transform/offset", NUMBERS, AT(material, use.offset), 2},                         \
@@ -76,6 +77,7 @@ static const field texture_fields[] = {{"sampler", NUMBER, AT(texture, sampler)}
       {path "/extensions/KHR_texture_transform/scale", NUMBERS, AT(material, use.scale), 2}, {                         \
     path "/extensions/KHR_texture_transform/texCoord", NUMBER, AT(material, use.other_set)                             \
   }
+/* NOLINTEND(bugprone-macro-parentheses) */
 #define GLOSSY "extensions/KHR_materials_pbrSpecularGlossiness"
 static const field material_fields[] = {{"pbrMetallicRoughness/baseColorFactor", NUMBERS, AT(material, color), 4},
                                         TEXTURE("pbrMetallicRoughness/baseColorTexture", base),

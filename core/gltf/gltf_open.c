@@ -12,7 +12,7 @@ static void put_message(const conic_gltf *gltf, char text[1024], const char *for
   vsnprintf(text + n, 1024 - (size_t)n, format, arguments);
 }
 
-conic_status conic_gltf_wrong(const conic_gltf *gltf, const char *format, ...) {
+conic_status(conic_gltf_wrong)(const conic_gltf *gltf, const char *format, ...) {
   char text[1024];
   va_list arguments;
   va_start(arguments, format);

@@ -172,7 +172,7 @@ static conic_status add_influences(conic_gltf_reader *reader, const conic_gltf_n
   conic_status status = read_attribute(reader, node, primitive, names[0], 4, 4, &of_joints);
   if (status == CONIC_OK)
     status = read_attribute(reader, node, primitive, names[1], 4, 4, &weights);
-  if (status == CONIC_OK && !weights.values)
+  if (status == CONIC_OK && (!of_joints.values || !weights.values))
     status = conic_gltf_wrong(&reader->gltf, "%s is not there", names[1]);
   for (size_t i = 0; status == CONIC_OK && i < 4 * count; i++) {
     const double weight = weights.values[i], joint = of_joints.values[i];
@@ -232,7 +232,7 @@ static conic_status place_part(conic_gltf_reader *reader, const conic_gltf_node 
       *is_mirrored = i == 0 ? is_turned : *is_mirrored;
     }
     put_vertex((const double(*)[4])place, positions->values + 3 * i, part->position[i]);
-    if (part->normal)
+    if (part->normal && normals->values)
       put_normal((const double(*)[3])rows, normals->values + 3 * i, part->normal[i]);
   }
   conic_memory_release(reader->gltf.context, sums);
@@ -305,7 +305,7 @@ static conic_status read_colors(conic_gltf_reader *reader, const conic_gltf_node
       part->alpha = NULL;
     }
   }
-  for (size_t i = 0; status == CONIC_OK && i < colors.count; i++) {
+  for (size_t i = 0; status == CONIC_OK && colors.values && i < colors.count; i++) {
     const double *color = colors.values + i * (size_t)colors.n;
     for (int channel = 0; channel < 3; channel++)
       part->color[i][channel] = (float)(color[channel] / scale);
@@ -330,7 +330,7 @@ static conic_status read_part(conic_gltf_reader *reader, const conic_gltf_node *
     part->normal = normals.values ? conic_memory_allocate(gltf->context, positions.count, sizeof *part->normal) : NULL;
     status = part->position && (part->normal || !normals.values) ? CONIC_OK : CONIC_ERROR_MEMORY;
   }
-  if (status == CONIC_OK)
+  if (status == CONIC_OK && positions.values)
     status = place_part(reader, node, primitive, world, &positions, &normals, is_mirrored);
   conic_memory_release_these(gltf->context, positions.values, normals.values);
   if (status == CONIC_OK && reader->options->keeps_faces)

@@ -70,7 +70,7 @@ static void compare_planes(const conic_image *a, const conic_image *b, conic_dif
 
 static int has_same_alpha(const conic_image *a, const conic_image *b) {
   const float *a_rgba = a->planes[CONIC_PLANE_RGBA], *b_rgba = b->planes[CONIC_PLANE_RGBA];
-  size_t i = 0, n = conic_image_pixels(a);
+  size_t i = 0, n = a_rgba && b_rgba ? conic_image_pixels(a) : 0;
   while (i < n && conic_same_bits(a_rgba[4 * i + 3], b_rgba[4 * i + 3]))
     i++;
   return i == n;

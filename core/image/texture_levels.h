@@ -32,7 +32,7 @@ struct conic_texture {
 
 /* conic_texture_sample with the fourth float beside the colour. */
 void conic_texture_sample_channels(const conic_texture *texture, const float uv[2], const float along[2],
-                                   const float across[2], float channels[4]);
+                                   const float across[2], float color[4]);
 
 /* Replaces the texture's alpha by the other's. Errors: INPUT (no room), MEMORY. */
 conic_status conic_texture_take_alpha(conic_texture *texture, const conic_texture *other);

@@ -47,7 +47,7 @@ conic_status conic_deep_pack(conic_context *context, const conic_deep_line *line
     return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "a line of a deep image has over %d samples",
                       INT32_MAX / (4 * N_CHANNELS));
   packed->n_ends = 4 * (size_t)width;
-  packed->n_samples = packed->n_unpacked = 4 * N_CHANNELS * line->n_samples;
+  packed->n_samples = packed->n_unpacked = (size_t)4 * N_CHANNELS * line->n_samples;
   if (!make_room(context, &packed->ends, &packed->ends_room, packed->n_ends) ||
       !make_room(context, &packed->samples, &packed->samples_room, packed->n_samples))
     return CONIC_ERROR_MEMORY;

@@ -31,7 +31,7 @@ static void write_head(const conic_image *image, FILE *to) {
   data[0] = 0;
   put_chunk(to, chunk, "sRGB", 1);
   for (size_t i = 0; i < 8; i++)
-    conic_store_big_32(data + 4 * i, chromaticities[i]);
+    conic_store_big_32(data + (size_t)i * 4, chromaticities[i]);
   put_chunk(to, chunk, "cHRM", 32);
 }
 
@@ -54,7 +54,7 @@ static conic_status write_shot(conic_context *context, const char *shot, FILE *t
 static void write_resolution(double dpi, FILE *to) {
   unsigned char chunk[32], *data = chunk + CONIC_PNG_DATA;
   for (int i = 0; i < 2; i++)
-    conic_store_big_32(data + 4 * i, (uint32_t)(dpi / 0.0254 + 0.5));
+    conic_store_big_32(data + (size_t)i * 4, (uint32_t)(dpi / 0.0254 + 0.5));
   data[8] = 1; /* a metre */
   put_chunk(to, chunk, "pHYs", 9);
 }

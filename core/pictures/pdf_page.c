@@ -101,7 +101,7 @@ conic_status conic_pdf_picture(conic_pdf *pdf, int width, int height) {
 /* The picture's end are no bytes. */
 void conic_pdf_rows(conic_pdf *pdf, const unsigned char *rgb, size_t n_bytes) {
 #if CONIC_HAVE_ZLIB
-  pdf->packer.next_in = (Bytef *)(uintptr_t)rgb;
+  pdf->packer.next_in = (z_const Bytef *)rgb;
   pdf->packer.avail_in = (uInt)n_bytes;
   do {
     pdf->packer.next_out = pdf->packed;

@@ -76,7 +76,8 @@ static conic_status choose_columns(e57_reader *reader) {
   for (int i = 0; i < 3; i++)
     reader->columns[PLACE + i] = conic_e57_column_find(scan, reader->is_spherical ? spherical[i] : cartesian[i]);
   for (int i = 0; i < 6; i++)
-    reader->columns[COLOR + i] = has_all(scan, others + i / 3 * 3) ? conic_e57_column_find(scan, others[i]) : -1;
+    reader->columns[COLOR + i] =
+        has_all(scan, others + (size_t)i / 3 * 3) ? conic_e57_column_find(scan, others[i]) : -1;
   reader->columns[POINT_INVALID] =
       conic_e57_column_find(scan, reader->is_spherical ? "sphericalInvalidState" : "cartesianInvalidState");
   reader->columns[COLOR_INVALID] = conic_e57_column_find(scan, "isColorInvalid");

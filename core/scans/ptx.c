@@ -130,9 +130,12 @@ static conic_status take_layout(ptx_reader *reader, size_t n) {
 
 static conic_status take_place(ptx_reader *reader, const double values[MOST_VALUES], size_t n) {
   conic_status status = n == reader->n_values ? CONIC_OK : take_layout(reader, n);
-  reader->builder.model->n_unmeasured += (uint64_t)is_empty_place(values);
-  if (status != CONIC_OK || is_empty_place(values))
+  if (status != CONIC_OK)
     return status;
+  if (is_empty_place(values)) {
+    reader->builder.model->n_unmeasured++;
+    return CONIC_OK;
+  }
   if (conic_builder_points(&reader->builder) >= CONIC_MAX_POINTS)
     return conic_input_wrong(reader->input, "too many points");
   status = conic_builder_reserve_points(&reader->builder, reader->builder.model->points.count + 1);
@@ -154,8 +157,8 @@ static conic_status tell_cut(const ptx_reader *reader, uint64_t n_missing) {
 static conic_status read_places(ptx_reader *reader, int *is_done) {
   uint64_t n_places = (uint64_t)(reader->head[0][0] * reader->head[1][0]);
   conic_status status = CONIC_OK;
+  double values[MOST_VALUES] = {0.0};
   for (uint64_t i = 0; i < n_places && status == CONIC_OK; i++) {
-    double values[MOST_VALUES];
     size_t n;
     status = next_numbers(reader, values, &n, is_done);
     if (status == CONIC_OK && n == 0)

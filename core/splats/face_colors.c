@@ -36,7 +36,7 @@ static uint32_t code_of(const float linear[3]) {
 static conic_status find_material(conic_context *context, uint32_t *table, unsigned bits, conic_faces *faces,
                                   const float linear[3], uint32_t *found) {
   const uint32_t code = code_of(linear) + 1;
-  uint32_t place = (code * UINT32_C(2654435761)) >> (32 - bits);
+  size_t place = (code * UINT32_C(2654435761)) >> (32 - bits);
   while (table[2 * place] && table[2 * place] != code)
     place = (place + 1) & ((UINT32_C(1) << bits) - 1);
   if (!table[2 * place] && faces->n_made < MOST_COLORS) {

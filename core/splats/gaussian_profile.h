@@ -22,7 +22,7 @@ typedef enum conic_gaussian_coverage {
   CONIC_COVERAGE_BOX = 2    /* in the tiles of 16 × 16 pixels that meet a box */
 } conic_gaussian_coverage;
 
-typedef struct conic_profile_row {
+typedef struct conic_profile_row { /* NOLINT(clang-analyzer-optin.performance.Padding): in the order of the tables */
   const char *name;
   conic_gaussian_shape shape;
   conic_gaussian_coverage coverage;

@@ -54,7 +54,7 @@ static inline float conic_gauss_narrow(float q) {
   DO(CONIC_KERNEL_HAT, "hat", 0u)                                                                                      \
   DO(CONIC_KERNEL_BOX, "box", CONIC_IS_FLAT)
 
-#define CONIC_COUNT_KERNEL(type, word, traits) +1
+#define CONIC_COUNT_KERNEL(type, word, traits) +1 /* NOLINT(bugprone-macro-parentheses): a sum of them */
 _Static_assert(CONIC_N_KERNELS == CONIC_FOR_KERNELS(CONIC_COUNT_KERNEL), "CONIC_N_KERNELS is not how many there are");
 
 static inline unsigned conic_kernel_traits(const conic_kernel *kernel) {

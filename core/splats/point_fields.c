@@ -199,9 +199,9 @@ conic_status conic_fields_check(conic_context *context, const char *file, const 
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: it has faces, and points are chosen of files without", file);
   if (model->n_fields)
     return CONIC_OK; /* its reader has looked */
-  const char *wanted = options->where                                  ? options->where
-                       : options->keep && strcmp(options->keep, "all") ? options->keep
-                                                                       : NULL;
+  const char *wanted = options->where                                       ? options->where
+                       : options->keep && strcmp(options->keep, "all") != 0 ? options->keep
+                                                                            : NULL;
   if (!wanted && options->field && !options->field_is_optional && !model->points.scalar)
     wanted = options->field;
   return wanted ? refuse_field(context, file, wanted, model) : CONIC_OK;

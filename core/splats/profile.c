@@ -328,8 +328,8 @@ static void fill_steep(profile_table *table, const normal_table *normal, int low
     for (int i = 0; i < RADII; i++) {
       double share[2] = {share_of_level(low), share_of_level(high)}, nodes[TERMS];
       find_nodes(&blurred, &profile, share, i, nodes);
-      write_polynomial(nodes, 0, i, table->values + (low * LEVELS + high) * CONIC_PROFILE_SLICE);
-      write_polynomial(nodes, 1, i, table->values + (high * LEVELS + low) * CONIC_PROFILE_SLICE);
+      write_polynomial(nodes, 0, i, table->values + (size_t)(low * LEVELS + high) * CONIC_PROFILE_SLICE);
+      write_polynomial(nodes, 1, i, table->values + (size_t)(high * LEVELS + low) * CONIC_PROFILE_SLICE);
     }
 }
 
@@ -349,8 +349,8 @@ static void fill_smooth(profile_table *table, const normal_table *normal, int lo
       turned[place * TERMS + TERMS - 1 - direction] = values[i];
     }
     float *smooth = table->values + CONIC_PROFILE_STEEP;
-    smooth_fit_solve(&fit, values, support, smooth + (low * SMOOTH + high) * SMOOTH_TERMS);
-    smooth_fit_solve(&fit, turned, support, smooth + (high * SMOOTH + low) * SMOOTH_TERMS);
+    smooth_fit_solve(&fit, values, support, smooth + (size_t)(low * SMOOTH + high) * SMOOTH_TERMS);
+    smooth_fit_solve(&fit, turned, support, smooth + (size_t)(high * SMOOTH + low) * SMOOTH_TERMS);
   }
 }
 

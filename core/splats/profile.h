@@ -118,8 +118,8 @@ static inline conic_aim conic_aim_of(const conic_profile *profile, float xx, flo
 /* An entry between the levels. */
 static inline float conic_profile_entry(const conic_profile *profile, const conic_aim *aim, int i) {
   CONIC_FAR const float *low =
-      profile->table + (aim->level[0] * CONIC_PROFILE_LEVELS + aim->level[1]) * CONIC_PROFILE_SLICE + i;
-  CONIC_FAR const float *high = low + CONIC_PROFILE_LEVELS * CONIC_PROFILE_SLICE;
+      profile->table + (ptrdiff_t)((aim->level[0] * CONIC_PROFILE_LEVELS + aim->level[1]) * CONIC_PROFILE_SLICE) + i;
+  CONIC_FAR const float *high = low + (ptrdiff_t)(CONIC_PROFILE_LEVELS * CONIC_PROFILE_SLICE);
   float a = low[0] + aim->part[1] * (low[CONIC_PROFILE_SLICE] - low[0]);
   float b = high[0] + aim->part[1] * (high[CONIC_PROFILE_SLICE] - high[0]);
   return a + aim->part[0] * (b - a);
@@ -129,8 +129,8 @@ static inline float conic_profile_entry(const conic_profile *profile, const coni
 static inline float conic_profile_coefficient(const conic_profile *profile, const conic_aim *aim, int i) {
   CONIC_FAR const float *low =
       profile->table + CONIC_PROFILE_STEEP +
-      (aim->level[0] * CONIC_PROFILE_SMOOTH_LEVELS + aim->level[1]) * CONIC_PROFILE_SMOOTH_TERMS + i;
-  CONIC_FAR const float *high = low + CONIC_PROFILE_SMOOTH_LEVELS * CONIC_PROFILE_SMOOTH_TERMS;
+      (ptrdiff_t)((aim->level[0] * CONIC_PROFILE_SMOOTH_LEVELS + aim->level[1]) * CONIC_PROFILE_SMOOTH_TERMS) + i;
+  CONIC_FAR const float *high = low + (ptrdiff_t)(CONIC_PROFILE_SMOOTH_LEVELS * CONIC_PROFILE_SMOOTH_TERMS);
   float a = low[0] + aim->part[1] * (low[CONIC_PROFILE_SMOOTH_TERMS] - low[0]);
   float b = high[0] + aim->part[1] * (high[CONIC_PROFILE_SMOOTH_TERMS] - high[0]);
   return a + aim->part[0] * (b - a);

@@ -70,9 +70,9 @@ static gaussian *read_ply(const char *data, size_t *n, int *n_sh) {
       else if (strncmp(names[k], "f_rest_", 7) == 0) /* one channel after the other */
         g.sh[which / (n_rest / 3)][1 + which % (n_rest / 3)] = f;
       else if (strcmp(names[k], "opacity") == 0)
-        g.opacity = (float)(1.0 / (1.0 + exp(-f))); /* a logit */
+        g.opacity = (float)(1.0 / (1.0 + exp(-(double)f))); /* a logit */
       else if (strncmp(names[k], "scale_", 6) == 0)
-        g.scale[which] = (float)exp(f); /* a logarithm */
+        g.scale[which] = (float)exp((double)f); /* a logarithm */
       else if (strncmp(names[k], "rot_", 4) == 0)
         g.rotation[which] = f;
     }

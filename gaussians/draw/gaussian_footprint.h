@@ -58,6 +58,5 @@ conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const
 
 /* A Gaussian's colour in floats (docs/reference/gaussians.md, Colour): max(0, ½ + Σ sh·Y) seen along `from_eye`, of any
  * length, or by degree 0 alone. Returns 0 where it is not finite. */
-int conic_harmonic_color(const conic_gaussians *gaussians, size_t i, int is_plain, const double from_eye[3],
-                         float color[3]);
+int conic_harmonic_color(const conic_gaussians *set, size_t i, int is_plain, const double from_eye[3], float color[3]);
 #endif

@@ -19,15 +19,15 @@ conic_status conic_gaussian_picture_begin(conic_context *context, const conic_ga
 
 /* Puts in order, bins and composites what the window meets, into planes of its size. On a device the window is the
  * picture. Errors: MEMORY, CANCELLED, the device's. */
-conic_status conic_gaussian_picture_draw(conic_gaussian_picture *picture, const conic_gaussian_window *window,
+conic_status conic_gaussian_picture_draw(conic_gaussian_picture *f, const conic_gaussian_window *window,
                                          conic_gaussian_planes *planes);
 
 /* From now on the picture is drawn in plain C, and says of what: `steps` has room for all that windows composite, and
  * their size. */
-void conic_gaussian_picture_note(conic_gaussian_picture *picture, conic_gaussian_steps *steps);
+void conic_gaussian_picture_note(conic_gaussian_picture *f, conic_gaussian_steps *steps);
 
 /* What was drawn so far, and how long it took. The counts are the whole picture's from the beginning on. */
-const conic_gaussian_statistics *conic_gaussian_picture_statistics(const conic_gaussian_picture *picture);
+const conic_gaussian_statistics *conic_gaussian_picture_statistics(const conic_gaussian_picture *f);
 
 /* Null is allowed. */
-void conic_gaussian_picture_release(conic_gaussian_picture *picture);
+void conic_gaussian_picture_release(conic_gaussian_picture *f);

@@ -93,7 +93,8 @@ static float half_reach_of(double reach) {
 
 /* Whole tiles, as integers that are cut off towards 0. */
 static double tile_border(double place, double size, double tile) {
-  double n = place / tile, most = (double)(((int)size + (int)tile - 1) / (int)tile);
+  int n_tiles = ((int)size + (int)tile - 1) / (int)tile;
+  double n = place / tile, most = (double)n_tiles;
   return tile * (double)(int)conic_limited(n, 0.0, most);
 }
 
@@ -381,7 +382,7 @@ static int find_unscented_size(const conic_profile_row *rules, const double v[3]
   const double longest = mean + sqrt(apart > 0.01 ? apart : 0.01);
   const double extent = conic_limited(sqrt(2.0 * conic_logarithm(ratio)), 0.0, 3.33);
   for (int axis = 0; axis < 2; axis++)
-    half[axis] = extent * sqrt(v[2 * axis] < longest ? v[2 * axis] : longest);
+    half[axis] = extent * sqrt(v[(size_t)axis * 2] < longest ? v[(size_t)axis * 2] : longest);
   return is_number(half[0]) && is_number(half[1]);
 }
 

@@ -23,8 +23,9 @@ static void add_sample(const share_job *j, size_t sample, float *sums) {
     sums[j->name_of(j->cookie, steps[i].index)] += j->share * T * steps[i].alpha;
     T *= 1.0f - steps[i].alpha;
   }
-  const float A = surfaces ? ((const float *)surfaces->planes[CONIC_PLANE_RGBA])[4 * sample + 3] : 0.0f;
-  if (A > 0.0f) {
+  const float *rgba = surfaces ? surfaces->planes[CONIC_PLANE_RGBA] : NULL;
+  const float A = rgba ? rgba[4 * sample + 3] : 0.0f;
+  if (rgba && A > 0.0f) {
     const uint32_t *ids = surfaces->planes[CONIC_PLANE_ID];
     sums[j->name_of(j->cookie, j->first_id + ids[sample])] += j->share * T * A;
   }

@@ -8,7 +8,8 @@
 
 enum { CONIC_GAUSSIAN_TILE = 16 };
 #ifndef CONIC_GAUSSIAN_TILE_PIXELS /* 1 where a device has a work-item for each */
-#define CONIC_GAUSSIAN_TILE_PIXELS (CONIC_GAUSSIAN_TILE * CONIC_GAUSSIAN_TILE)
+#define CONIC_GAUSSIAN_TILE_PIXELS 256
+_Static_assert(CONIC_GAUSSIAN_TILE_PIXELS == CONIC_GAUSSIAN_TILE * CONIC_GAUSSIAN_TILE, "all of a tile");
 #endif
 
 /* Where a frame's records lie: in a memory of its own on a device. */
@@ -23,7 +24,7 @@ static inline int conic_gaussian_column(size_t pixel) {
 }
 
 static inline int conic_gaussian_row(size_t pixel) {
-  return (int)(pixel / (4 * CONIC_GAUSSIAN_BLOCK_PIXELS) * 4 + pixel % 4);
+  return (int)(pixel / CONIC_GAUSSIAN_BLOCK_PIXELS / 4 * 4 + pixel % 4);
 }
 
 /* Pixels beside the picture are there, too. */

@@ -66,7 +66,8 @@ static void settle_cell(const histogram *found, code_cell *of) {
   of->loss = 0.0;
   if (count == 0.0)
     return;
-  double least = (double)(of->last + 1 - WIDEST / 2), most = (double)(of->first + WIDEST / 2);
+  enum { HALF = WIDEST / 2 };
+  double least = (double)(of->last + 1 - HALF), most = (double)(of->first + HALF);
   double value = sum / count;
   of->value = value < least ? least : value > most ? most : value;
   of->loss = squares - of->value * (2.0 * sum - of->value * count);

@@ -324,7 +324,7 @@ static conic_status put_chunk(const conic_gaussian_writer *writer, size_t i_chun
     take_values(gaussians, first + i, values[i]);
   find_bounds((const chunk_values *)values, n, bounds);
   for (int k = 0; is_box && k < N_BOUNDS; k++)
-    conic_store_float(bytes + 4 * k, bounds[k]);
+    conic_store_float(bytes + (size_t)k * 4, bounds[k]);
   if (is_box)
     return conic_gaussian_writer_put(writer, bytes, N_BOUNDS * sizeof(float));
   for (size_t i = 0; i < n; i++) {

@@ -82,7 +82,7 @@ static conic_status take_attribute(gaussian_gltf_reader *reader, double accessor
       if (columns)
         columns[k][reader->n_placed + i] = value;
       else
-        conic_gaussians_put_harmonic(reader->gaussians, reader->n_placed + i, (size_t)(i_harmonic + k), value);
+        conic_gaussians_put_harmonic(reader->gaussians, reader->n_placed + i, (size_t)i_harmonic + (size_t)k, value);
     }
   conic_gltf_close_array(&reader->gltf, &array);
   return status;

@@ -76,7 +76,7 @@ static void take_rotation(const conic_gaussians *gaussians, size_t i, float xyzw
 static void put_attribute(gltf_sink *sink, size_t i_attribute, const gltf_attribute *attribute) {
   const conic_gaussians *gaussians = sink->writer->gaussians;
   for (size_t i = 0; sink->status == CONIC_OK && i < gaussians->count; i++) {
-    float values[4], room[CONIC_MOST_HARMONICS];
+    float values[4] = {0.0f}, room[CONIC_MOST_HARMONICS];
     if (i_attribute == 1)
       take_rotation(gaussians, i, values);
     for (int k = 0; k < 3; k++)

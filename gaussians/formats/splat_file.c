@@ -56,8 +56,8 @@ conic_status conic_splat_file_write(const conic_gaussian_writer *writer) {
     unsigned char *row = rows + i % BLOCK * ROW_BYTES;
     const float *sh = conic_gaussians_harmonics(gaussians, i, room);
     for (int k = 0; k < 3; k++) {
-      conic_store_float(row + 4 * k, (float)conic_gaussians_mean(gaussians, k, i));
-      conic_store_float(row + 12 + 4 * k, gaussians->scale[k] ? gaussians->scale[k][i] : 0.0f);
+      conic_store_float(row + (size_t)k * 4, (float)conic_gaussians_mean(gaussians, k, i));
+      conic_store_float(row + 12 + (size_t)k * 4, gaussians->scale[k] ? gaussians->scale[k][i] : 0.0f);
       row[24 + k] = (unsigned char)conic_code_of_share(0.5 + CONIC_SH_CONSTANT * (double)sh[k], 255);
     }
     row[27] = (unsigned char)conic_code_of_share((double)gaussians->opacity[i], 255);

@@ -116,8 +116,8 @@ static conic_status put_streams(const conic_gaussian_writer *writer, const unsig
     size_t n_this = conic_zstd_pack_whole(zstd, streams, n_stream, packed + n_packed);
     if (n_this == 0)
       status = CONIC_ERROR_MEMORY;
-    conic_store_64(table + 16 * n_streams, n_this);
-    conic_store_64(table + 16 * n_streams + 8, n_stream);
+    conic_store_64(table + (size_t)n_streams * 16, n_this);
+    conic_store_64(table + (size_t)n_streams * 16 + 8, n_stream);
     n_streams++;
     streams += n_stream;
     n_packed += n_this;

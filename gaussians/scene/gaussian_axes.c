@@ -149,7 +149,7 @@ void conic_gaussians_shift(conic_gaussians *gaussians, double scale, const doubl
       gaussians->position[axis][i] = (float)((double)gaussians->position[axis][i] * scale);
       if (gaussians->scale[axis])
         gaussians->scale[axis][i] = (float)((double)gaussians->scale[axis][i] * scale);
-      if (gaussians->log_scale[axis])
+      if (gaussians->scale[axis] && gaussians->log_scale[axis])
         gaussians->log_scale[axis][i] = conic_log_of_scale(gaussians->scale[axis][i]);
     }
   }

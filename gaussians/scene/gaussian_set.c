@@ -81,7 +81,7 @@ void conic_gaussians_put(const conic_gaussians *from, conic_gaussians *to, size_
     memcpy(*own[i] + first, *columns[i], from->count * sizeof(float));
   for (size_t i = 0; i < from->count; i++) {
     const float *harmonics = conic_gaussians_harmonics(from, i, room);
-    for (size_t k = 0; k < n; k++)
+    for (size_t k = 0; k < n; k++) /* NOLINTNEXTLINE(clang-analyzer-core.*): n_from of them */
       conic_gaussians_put_harmonic(to, first + i, k, k < n_from ? harmonics[k] : 0.0f);
   }
 }

@@ -77,8 +77,8 @@ void conic_harmonics_find_turn(const double rotation[3][3], conic_harmonics_turn
 
 void conic_harmonics_apply(conic_harmonics_turn turn, int degree, float *sh) {
   for (int l = 1; l <= degree; l++) {
-    float *of_degree = sh + 3 * l * l, old[3 * CONIC_MOST_ORDERS];
-    memcpy(old, of_degree, (size_t)(3 * (2 * l + 1)) * sizeof *old);
+    float *of_degree = sh + (ptrdiff_t)(3 * l * l), old[3 * CONIC_MOST_ORDERS];
+    memcpy(old, of_degree, 3 * (size_t)(2 * l + 1) * sizeof *old);
     for (int j = 0; j < 2 * l + 1; j++)
       for (int channel = 0; channel < 3; channel++) {
         double sum = 0.0;

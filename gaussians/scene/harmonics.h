@@ -6,7 +6,7 @@
 enum { CONIC_MOST_ORDERS = 2 * CONIC_MAX_SH_DEGREE + 1 };
 
 /* The (degree + 1)² harmonics of a unit direction, lowest degree and order first. */
-void conic_harmonics_evaluate(const double direction[3], int degree, double *harmonics);
+void conic_harmonics_evaluate(const double direction[3], int degree, double *y);
 
 /* What the coefficients of each degree become where all directions d become R·d, R[row][column] a rotation:
  * new[j] = Σ turn[degree][j][k] old[k]. Elements that are 0, 1 or -1 but for rounding are made so. */

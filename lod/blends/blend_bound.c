@@ -138,7 +138,7 @@ static void look_from(const screen *s, const conic_blend *parts, size_t n, conic
       raise_to(&whole->bound.ceiling, at.sum[c][i]);
       raise_to(&whole->bound.ceiling, alone.sum[c][i]);
     }
-    sum += i < SIDE * SIDE ? (double)change : 0.0;
+    sum += i < (size_t)SIDE * SIDE ? (double)change : 0.0;
     raise_to(&whole->bound.most, change);
   }
   raise_to(&whole->bound.light, (float)(sum * step * step * root));

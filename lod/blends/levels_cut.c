@@ -31,7 +31,7 @@ typedef struct level_cutting {
 } level_cutting;
 
 uint64_t conic_levels_most(const conic_levels *levels) {
-  const uint64_t each = DRAWING_BYTES + 4 * WORDS_BESIDE * conic_levels_columns(&levels->header, 0);
+  const uint64_t each = DRAWING_BYTES + UINT64_C(4) * WORDS_BESIDE * conic_levels_columns(&levels->header, 0);
   return levels->memory_bytes == 0 ? UINT64_MAX : levels->memory_bytes / each + 1;
 }
 

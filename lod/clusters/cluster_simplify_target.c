@@ -104,7 +104,7 @@ int conic_simplifier_keeps_facing(const conic_simplifier *s, uint32_t slot, cons
   for (int corner = 0; corner < 3; corner++)
     corners[corner] = s->vertices[t->corners[corner]].at;
   double length = s->is_one ? area2_of(corners, normal) : 0.0;
-  for (int axis = 0; axis < 3; axis++)
+  for (int axis = 0; axis < 3; axis++) /* NOLINTNEXTLINE(clang-analyzer-core.*): with a length it is set */
     normal[axis] = length > 0.0 ? normal[axis] / length : t->normal[axis] * (double)s->mesh->adjacency->side[t->face];
   corners[slot % 3] = at;
   double area2 = area2_of(corners, cross), along = conic_dot(cross, normal);

@@ -28,7 +28,7 @@ static const char *take_copc_head(conic_hierarchy *h, const unsigned char *head)
   uint32_t point_bytes = (uint32_t)conic_load_bits(head + AT_COPC_POINT_BYTES, 2);
   if (!conic_point_layout_of_las(format, point_bytes, &h->layout))
     return "its points are of no format that is read";
-  for (int axis = 0; axis < 3; axis++) {
+  for (size_t axis = 0; axis < 3; axis++) {
     h->low[axis] = conic_load_double(head + AT_RECORD + 8 * axis) - half;
     h->edge[axis] = 2.0 * half;
     h->box_high[axis] = conic_load_double(head + AT_COPC_BOX + 16 * axis);
@@ -75,7 +75,7 @@ static void locate_copc(const conic_hierarchy *h, const conic_hierarchy_node *no
 static const char *take_copc_node(conic_hierarchy *h, const unsigned char *from) {
   uint32_t cell[3], level = (uint32_t)conic_load_bits(from, 4), count = (uint32_t)conic_load_bits(from + 28, 4);
   conic_hierarchy_node node = {.offset = conic_load_bits(from + 16, 8), .n_bytes = conic_load_bits(from + 24, 4)};
-  for (int axis = 0; axis < 3; axis++)
+  for (size_t axis = 0; axis < 3; axis++)
     cell[axis] = (uint32_t)conic_load_bits(from + 4 + 4 * axis, 4);
   if (!conic_hierarchy_key(level, cell, &node.key))
     return "its page of the hierarchy names what is no node";

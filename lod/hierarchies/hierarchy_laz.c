@@ -130,7 +130,7 @@ const char *conic_hierarchy_take_laz(conic_context *context, const unsigned char
     return "it holds another number of points than the hierarchy says";
   if (!conic_point_layout_of_las(bytes[AT_LAZ_FORMAT] & 0x3f, point_bytes, &layout))
     return "its points are of no format that is read";
-  for (int axis = 0; axis < 3; axis++) {
+  for (size_t axis = 0; axis < 3; axis++) {
     layout.scale[axis] = conic_load_double(bytes + AT_LAZ_SCALE + 8 * axis);
     layout.offset[axis] = conic_load_double(bytes + AT_LAZ_OFFSET + 8 * axis);
   }

@@ -48,7 +48,7 @@ void conic_mesh_cells_release(conic_mesh_cells *c) {
     conic_memory_release_these(c->context, c->buckets[i].faces, c->buckets[i].blocks);
   }
   if (c->map)
-    conic_disk_unmap((void *)(uintptr_t)c->map, c->map_bytes);
+    conic_disk_unmap((void *)c->map, c->map_bytes);
   conic_scratch_close(&c->vertices);
   conic_scratch_close(&c->faces);
   conic_pile_end(&c->buckets_file);
@@ -155,7 +155,7 @@ static conic_status for_faces(conic_mesh_cells *c, see_face *see, double from, d
     status = conic_scratch_read(&c->faces, first * sizeof *faces, faces, n * sizeof *faces);
     for (size_t i = 0; i < n && status == CONIC_OK; i++)
       status = see(c, faces[i]);
-    conic_disk_give_back((void *)(uintptr_t)c->map, c->map_bytes);
+    conic_disk_give_back((void *)c->map, c->map_bytes);
     if (status == CONIC_OK)
       status = conic_progress(c->context, "part", from + (to - from) * (double)(first + n) / (double)c->counts.n_faces);
   }
@@ -245,7 +245,7 @@ static conic_status find_tree(conic_mesh_cells *c) {
       n += conic_is_finite((double)at[n][0]) && conic_is_finite((double)at[n][1]) && conic_is_finite((double)at[n][2]);
     }
     if (n % FACES_AT_ONCE == 0)
-      conic_disk_give_back((void *)(uintptr_t)c->map, c->map_bytes);
+      conic_disk_give_back((void *)c->map, c->map_bytes);
   }
   if (status == CONIC_OK)
     status = grow_tree(c, at, n, (double)step, sorted, 0);
@@ -460,7 +460,7 @@ static void copy_cell_vertices(const conic_mesh_cells *c, const uint32_t *listed
       mesh->color[channel][i] = *from++;
   }
   memcpy(mesh->origin, c->origin, sizeof mesh->origin);
-  conic_disk_give_back((void *)(uintptr_t)c->map, c->map_bytes);
+  conic_disk_give_back((void *)c->map, c->map_bytes);
 }
 
 conic_status conic_mesh_cells_take(conic_mesh_cells *c, size_t cell, conic_triangles *mesh, size_t *n_own) {

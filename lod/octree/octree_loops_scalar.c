@@ -137,7 +137,7 @@ static void plain_list_near(const conic_discs *discs, size_t first, conic_near_d
 static void plain_find_near(const conic_discs *discs, conic_near_discs *near) {
   plain_list_near(discs, 0, near);
   if (near->is_full)
-    plain_list_near(discs, near->begin / (CONIC_DISC_BLOCK * CONIC_DISC_BLOCK) * CONIC_DISC_BLOCK, near);
+    plain_list_near(discs, near->begin / CONIC_DISC_BLOCK / CONIC_DISC_BLOCK * CONIC_DISC_BLOCK, near);
 }
 
 /* A leaf in a node's frame. */

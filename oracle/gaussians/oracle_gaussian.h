@@ -36,17 +36,17 @@ typedef struct oracle_gaussian {
 void conic_oracle_gaussian_look(const conic_camera *camera, conic_gaussian_profile profile, oracle_gaussian_view *view);
 
 /* Sets up Gaussian i; is_drawn is 0 where the profile leaves it out everywhere. */
-void conic_oracle_gaussian_place(const oracle_gaussian_view *view, const conic_gaussians *gaussians, size_t i,
+void conic_oracle_gaussian_place(const oracle_gaussian_view *view, const conic_gaussians *set, size_t i,
                                  oracle_gaussian *g);
 
 /* Its quaternion as the profile takes it; returns the length that it was divided by. */
-double conic_oracle_quaternion(const conic_profile_row *rules, const conic_gaussians *gaussians, size_t i, double q[4]);
+double conic_oracle_quaternion(const conic_profile_row *rules, const conic_gaussians *set, size_t i, double q[4]);
 /* The greatest standard deviation along an axis, in pixels; infinite where there is none. */
 double conic_oracle_longest_axis(const oracle_gaussian_view *view);
 /* The rotation of a quaternion of unit length. */
 void conic_oracle_rotation(const double q[4], double r[3][3]);
 /* Its harmonics' (degree + 1)² × 3 numbers. */
-void conic_oracle_harmonics_of(const conic_gaussians *gaussians, size_t i, double *sh);
+void conic_oracle_harmonics_of(const conic_gaussians *set, size_t i, double *sh);
 
 /* Its opacity at a place of the screen and the depth there; 0 where the profile leaves it out. */
 double conic_oracle_gaussian_alpha(const oracle_gaussian_view *view, const oracle_gaussian *g, double x, double y,

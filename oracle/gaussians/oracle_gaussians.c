@@ -67,11 +67,11 @@ static void add_interval(const oracle_cloud *clouds, size_t n, double from, doub
  * numbers. Returns the change that the last halving of the steps made. */
 static double oracle_integrate(const oracle_cloud *clouds, size_t n, double *places, double color[3]) {
   size_t n_places = 0;
+  enum { MIDDLE = ORACLE_PLACES / 2 };
   double change = 0.0, before[3] = {0.0, 0.0, 0.0};
   for (size_t i = 0; i < n; i++)
     for (int k = 0; k < ORACLE_PLACES; k++)
-      places[n_places++] =
-          clouds[i].z + (k - ORACLE_PLACES / 2) * (2.0 * REACH / (ORACLE_PLACES - 1)) * clouds[i].width;
+      places[n_places++] = clouds[i].z + (k - MIDDLE) * (2.0 * REACH / (ORACLE_PLACES - 1)) * clouds[i].width;
   qsort(places, n_places, sizeof *places, conic_compare_doubles);
   for (int halving = 0; halving < MOST_HALVINGS; halving++) {
     int n_steps = 1 << halving;

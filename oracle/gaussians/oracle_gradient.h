@@ -30,8 +30,7 @@ typedef struct oracle_shown {
 } oracle_shown;
 
 /* Sets up what a pixel needs; 0 where the picture does not show Gaussian i. */
-int conic_oracle_show(const oracle_gaussian_view *view, const conic_gaussians *gaussians, size_t i,
-                      oracle_shown *shown);
+int conic_oracle_show(const oracle_gaussian_view *view, const conic_gaussians *set, size_t i, oracle_shown *shown);
 
 /* What covers a pixel. */
 typedef struct oracle_met {
@@ -88,7 +87,6 @@ typedef struct oracle_eye {
 
 /* From what it is at the pixels to its parameters; the camera's part is added. `model` may be null: no doubts; and
  * `form`: the Gaussian's own. */
-void conic_oracle_gradient_chain(const oracle_gaussian_view *view, const oracle_eye *eye,
-                                 const conic_gaussians *gaussians, size_t i, const conic_float_model *model,
-                                 const double *form, const double *sums, oracle_parameters *to,
-                                 oracle_camera_gradient *camera);
+void conic_oracle_gradient_chain(const oracle_gaussian_view *view, const oracle_eye *eye, const conic_gaussians *set,
+                                 size_t i, const conic_float_model *model, const double *form, const double *sums,
+                                 oracle_parameters *to, oracle_camera_gradient *camera);

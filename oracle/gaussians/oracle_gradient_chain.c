@@ -146,7 +146,7 @@ static void ray_back(const oracle_gaussian_view *view, const oracle_gaussian *g,
   const int is_flat = g->is_flat || g->scale[2] == 0.0;
   to->opacity = sums[BY_OPACITY];
   for (int k = 0; k < 3; k++) {
-    const double *by_ray = sums + BY_BALL + 3 * k, by_middle = sums[BY_MIDDLE + k];
+    const double *by_ray = sums + BY_BALL + (size_t)k * 3, by_middle = sums[BY_MIDDLE + k];
     const double scale = is_flat && k == 2 ? 1.0 : g->scale[k];
     double by_row[3];
     for (int axis = 0; axis < 3; axis++)

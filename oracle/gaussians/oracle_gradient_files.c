@@ -43,9 +43,9 @@ static conic_status weights_of_image(conic_context *context, const char *path, c
   for (size_t i = 0; i < (size_t)image.width * (size_t)image.height && status == CONIC_OK; i++) {
     for (size_t c = 0; c < 3 && w->rgb; c++)
       w->rgb[3 * i + c] = (double)rgba[4 * i + c];
-    if (w->alpha)
+    if (rgba && w->alpha)
       w->alpha[i] = (double)rgba[4 * i + 3];
-    if (w->z)
+    if (z && w->z)
       w->z[i] = (double)z[i];
   }
   conic_image_release(context, &image);

@@ -75,10 +75,10 @@ void conic_oracle_gradient_end(oracle_gradient_job *job);
 
 /* What the functions of conic/gaussian_gradient.h make of their arguments: a job with the gradient's room, which the
  * caller runs, and ends whatever comes of it. Its parts refer to *entry. Errors: ARGUMENT, MEMORY, UNSUPPORTED. */
-conic_status conic_oracle_gradient_begin(conic_context *context, const conic_gaussians *gaussians,
-                                         const conic_camera *camera, const conic_gaussian_options *options,
-                                         const conic_gaussian_weights *weights, const conic_gradient_options *how,
-                                         conic_float_kind kind, conic_gaussian_gradient *gradient, oracle_entry *entry,
+conic_status conic_oracle_gradient_begin(conic_context *context, const conic_gaussians *set, const conic_camera *camera,
+                                         const conic_gaussian_options *options, const conic_gaussian_weights *weights,
+                                         const conic_gradient_options *how, conic_float_kind kind,
+                                         conic_gaussian_gradient *gradient, oracle_entry *entry,
                                          oracle_gradient_job *job);
 /* Decisions in doubt, and the pixels where some of them are (null: not asked). Errors: MEMORY, CANCELLED. */
 conic_status conic_oracle_gradient_doubts(oracle_gradient_job *job, oracle_entry *entry);
@@ -103,14 +103,14 @@ void conic_oracle_disturbed_back(const oracle_gradient_job *job, const oracle_gr
                                  const oracle_shown *const *shown, oracle_met *met, size_t n, double behind,
                                  double (*sums)[N_BY_SCREEN]);
 /* Fills in judging->samples. Errors: MEMORY, CANCELLED. */
-conic_status conic_oracle_sample_roundings(const oracle_gradient_job *job);
+conic_status conic_oracle_sample_roundings(const oracle_gradient_job *right);
 
 /* A gradient of zeros. Errors: MEMORY. */
 conic_status conic_oracle_gradient_room(conic_context *context, size_t n, int sh_degree, int has_third_scale,
                                         conic_gaussian_gradient *gradient);
 
 /* A pixel's weights; 0 where there are none. */
-int conic_oracle_pixel_weights(const conic_gaussian_weights *weights, size_t pixel, double of_pixel[N_WEIGHTS]);
+int conic_oracle_pixel_weights(const conic_gaussian_weights *w, size_t pixel, double weights[N_WEIGHTS]);
 
 /* What judging a gradient needs of the chain. */
 
@@ -122,7 +122,7 @@ typedef struct row_sizes {
 void conic_oracle_row_sizes(const oracle_gaussian_view *view, const oracle_gaussian *g, row_sizes *sizes);
 
 /* The chain of an ellipse with every term of one sign; `sums` are none below 0. */
-void conic_oracle_gradient_sizes(const oracle_gaussian_view *view, const conic_gaussians *gaussians, size_t i,
+void conic_oracle_gradient_sizes(const oracle_gaussian_view *view, const conic_gaussians *set, size_t i,
                                  const double *sums, oracle_parameters *to);
 
 /* A Gaussian's numbers in one row: of the mean, the scales, the quaternion, the opacity, the place and the harmonics.

@@ -382,6 +382,7 @@ static conic_status check_theirs(conic_context *context, const conic_gaussians *
 conic_status conic_gaussian_gradient_judge(conic_context *context, const conic_gaussians *set,
                                            const conic_camera *camera, const conic_gaussian_options *options,
                                            const conic_gaussian_weights *weights, const conic_gradient_options *how,
+                                           /* NOLINTNEXTLINE(readability-non-const-parameter): filled in */
                                            const conic_gaussian_gradient *theirs, uint8_t *classes,
                                            conic_gradient_verdict *verdict) {
   conic_gaussian_gradient gradient;

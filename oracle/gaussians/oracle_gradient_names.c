@@ -28,7 +28,7 @@ typedef struct named_gaussian {
 } named_gaussian;
 
 typedef struct gradient_reading gradient_reading;
-struct gradient_reading {
+struct gradient_reading { /* NOLINT(clang-analyzer-optin.performance.Padding): in the order of the table */
   const char *name;
   unsigned kinds;
   double (*number)(const named_gaussian *g, const gradient_reading *r, size_t at);

@@ -136,8 +136,8 @@ static oracle_range find_transmittance(const oracle_meeting *meetings, size_t n,
 
 static void note_transmittances(void *data, size_t pixel, const oracle_meeting *meetings, size_t n, int i_thread) {
   const intermediates_finding *j = data;
-  const double x = (double)(pixel % (size_t)j->e->bounding.width) + 0.5;
-  const double y = (double)(pixel / (size_t)j->e->bounding.width) + 0.5;
+  const size_t width = (size_t)j->e->bounding.width, row = pixel / width;
+  const double x = (double)(pixel % width) + 0.5, y = (double)row + 0.5;
   (void)i_thread;
   for (size_t k = 0; k < n; k++)
     if (meetings[k].g->pixel[0] == x && meetings[k].g->pixel[1] == y && meetings[k].covers)

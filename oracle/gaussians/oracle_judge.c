@@ -273,6 +273,7 @@ static conic_status take_judging(conic_context *context, const conic_gaussian_ju
 
 conic_status conic_gaussian_judge(conic_context *context, const conic_gaussians *gaussians, const conic_camera *camera,
                                   const conic_gaussian_options *options, const conic_gaussian_judging *judging,
+                                  /* NOLINTNEXTLINE(readability-non-const-parameter): filled in */
                                   const conic_image *image, uint8_t *classes, conic_gaussian_verdict *verdict) {
   oracle_entry e;
   conic_gaussian_judging own;

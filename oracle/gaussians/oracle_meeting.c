@@ -6,7 +6,7 @@
 static int is_definite(const oracle_uncertain *g, double rounded) {
   double least[2], most = bounded_high((bounded){fabs(g->form[1].v), g->form[1].off}) * (1.0 + rounded);
   for (int axis = 0; axis < 2; axis++)
-    least[axis] = bounded_low(g->form[2 * axis]) * (1.0 - rounded);
+    least[axis] = bounded_low(g->form[(size_t)axis * 2]) * (1.0 - rounded);
   return least[0] > 0.0 && least[1] > 0.0 && least[0] * least[1] >= most * most;
 }
 

@@ -96,7 +96,7 @@ static double least_in_box(const oracle_uncertain *g, const double low[2], const
     const int axis = side / 2, other = 1 - axis;
     double on[2];
     on[axis] = side % 2 ? high[axis] : low[axis];
-    on[other] = g->place[other].v - g->form[1].v / g->form[2 * other].v * (on[axis] - g->place[axis].v);
+    on[other] = g->place[other].v - g->form[1].v / g->form[(size_t)other * 2].v * (on[axis] - g->place[axis].v);
     on[other] = oracle_min(oracle_max(on[other], low[other]), high[other]);
     double q = form_at(g, on[0], on[1]);
     if (q < least) {

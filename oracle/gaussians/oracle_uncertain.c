@@ -275,7 +275,7 @@ static void bound_coverage(const oracle_doubting *d, const bounded c[3], bounded
   } else if (conic_oracle_has_radii(rules)) {
     const bounded extent = extent_in_deviations(d, g->opacity);
     for (int axis = 0; axis < 2; axis++)
-      g->radius[axis] = bounded_multiply(extent, bounded_root(c[2 * axis], unit), unit);
+      g->radius[axis] = bounded_multiply(extent, bounded_root(c[(size_t)axis * 2], unit), unit);
   }
   for (int axis = 0; axis < 2 && rules->clip > 0.0; axis++) {
     const double half = 0.5 * (axis ? d->view->camera->height : d->view->camera->width);

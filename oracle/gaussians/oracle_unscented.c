@@ -49,7 +49,7 @@ static void find_radii(const oracle_gaussian_view *view, const bounded bare[3], 
   const double of_log = bounded_low(seen) > 0.0 ? seen.off / bounded_low(seen) + 8.0 * unit * (1.0 + log) : INFINITY;
   const bounded extent = lesser(bounded_root((bounded){2.0 * log, 2.0 * of_log}, unit), bounded_of(3.33));
   for (int axis = 0; axis < 2; axis++)
-    u->radius[axis] = bounded_multiply(extent, lesser(bounded_root(v[2 * axis], unit), longest), unit);
+    u->radius[axis] = bounded_multiply(extent, lesser(bounded_root(v[(size_t)axis * 2], unit), longest), unit);
   u->conditions[0] = determinants[1];
   u->conditions[1] = v[0];
   u->conditions[2] = v[2];

@@ -131,10 +131,11 @@ static conic_status draw_here(conic_raster_frame *f, conic_image *image, conic_r
   f->band_bits = bits;
   f->n_tiles_of_all = (((size_t)f->part.window.x_end + tile - 1) / tile) * (((size_t)height + tile - 1) / tile);
   conic_status status = CONIC_OK;
+  /* NOLINTNEXTLINE(clang-analyzer-core.*): a band ends the picture before that */
   for (int band = 0; band << bits < height && status == CONIC_OK; band++) {
     f->projected.band = band ? 1u << band : 0;
     f->part.window.y_begin = band << bits;
-    f->part.window.y_end = (band + 1) << bits < height ? (band + 1) << bits : height;
+    f->part.window.y_end = height - f->part.window.y_begin > 1 << bits ? f->part.window.y_begin + (1 << bits) : height;
     status = draw_window(f, image, statistics);
   }
   return status;

@@ -7,5 +7,5 @@
  * splat i may cover, and is empty where it is not drawn. Of `statistics`, sets what became of them. The camera is of
  * one sample a pixel; near_z and splat_length are given. Errors: as conic_render. */
 conic_status conic_splats_find_boxes(conic_context *context, const conic_splats *splats, const conic_camera *camera,
-                                     const conic_render_options *options, unsigned planes, conic_box *boxes,
+                                     const conic_render_options *given, unsigned planes, conic_box *boxes,
                                      conic_render_statistics *statistics);

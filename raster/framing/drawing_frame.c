@@ -43,7 +43,7 @@ static void find_stand(const conic_outline_reach *r, const double tangents[2], s
   }
   found->distance = farthest[4] + least_gap;
   for (int axis = 0; axis < 2; axis++) {
-    double plus = farthest[2 * axis], minus = farthest[2 * axis + 1];
+    double plus = farthest[(size_t)axis * 2], minus = farthest[(size_t)axis * 2 + 1];
     /* What turns about the centre keeps it in the middle. */
     if (axis == 0 && n_turns > 1)
       plus = minus = plus > minus ? plus : minus;

@@ -226,8 +226,8 @@ static double bound_of(const conic_outline_reach *r, size_t block, size_t i) {
 
 /* How far some block reaches along each direction: the one that may be the farthest. */
 static void look_ahead(conic_outline_reach *r) {
-  double greatest[CONIC_REACH_DIRECTIONS];
-  size_t blocks[CONIC_REACH_DIRECTIONS];
+  double greatest[CONIC_REACH_DIRECTIONS] = {0.0};
+  size_t blocks[CONIC_REACH_DIRECTIONS] = {0};
   for (size_t i = 0; i < r->n; i++)
     greatest[i] = r->farthest[i] = -HUGE_VAL;
   for (size_t block = 0; block < r->n_blocks; block++)

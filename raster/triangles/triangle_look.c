@@ -40,7 +40,7 @@ static void take_color(const CONIC_STORED float *values, const uint32_t corners[
 /* The attribute's component at three corners, as the first and differences from it. */
 static void take_component(const CONIC_STORED float *values, const uint32_t corners[3], float *first, float *second,
                            float *third) {
-  *first = values[corners[0]];
+  *first = values[corners[0]]; /* NOLINT(clang-analyzer-core.NullDereference): who has normals has three columns */
   *second = values[corners[1]] - *first;
   *third = values[corners[2]] - *first;
 }

@@ -7,7 +7,7 @@
 CONIC_DEFINE_NAMES(conic_method_name, conic_method, CONIC_N_METHODS, "conic", "ray", "affine", "point", "disc", "auto")
 
 const char *conic_kernel_type_name(conic_kernel_type type) {
-#define WORD_OF_KERNEL(type, word, traits) [type] = word,
+#define WORD_OF_KERNEL(type, word, traits) [type] = (word),
   static const char *const names[CONIC_N_KERNELS] = {CONIC_FOR_KERNELS(WORD_OF_KERNEL)};
   return (unsigned)type < CONIC_N_KERNELS ? names[type] : NULL;
 }

@@ -355,10 +355,11 @@ conic_status conic_source_draw_among(conic_source *source, conic_renderer *rende
     status = drawer->draw(drawer->cookie, &look.camera, &look.render, &look.view, &surfaces, &of_surfaces);
   if (status == CONIC_OK)
     status = composite_whole(source, renderer, camera, render, view->samples, &surfaces, image, statistics);
-  const uint64_t n_covered = statistics->pixels_covered;
-  if (status == CONIC_OK)
+  if (status == CONIC_OK) {
+    const uint64_t n_covered = statistics->pixels_covered;
     conic_statistics_add(&of_surfaces, statistics);
-  statistics->pixels_covered = n_covered;
+    statistics->pixels_covered = n_covered;
+  }
   conic_image_release(source->context, &surfaces);
   return status;
 }

@@ -28,7 +28,7 @@ typedef struct conic_gaussians_source {
 int conic_gaussians_source_takes(const char *path, const conic_source_options *options);
 
 /* Measures the Gaussians. Errors: INPUT (there is none to draw), MEMORY. */
-conic_status conic_gaussians_source_measure(conic_gaussians_source *source);
+conic_status conic_gaussians_source_measure(conic_gaussians_source *g);
 
 void conic_gaussians_source_close(conic_source *source);
 conic_status conic_gaussians_source_draw(conic_source *source, conic_renderer *renderer, const conic_camera *camera,

@@ -44,7 +44,7 @@ static conic_status join_scenes(conic_context *context, const conic_gaussians *s
   all->is_linear = sets[0].is_linear;
   for (size_t i = 0; i < n; first += sets[i++].count) {
     conic_gaussians_put(&sets[i], all, first);
-    for (int axis = 0; axis < 3 && memcmp(sets[i].origin, all->origin, sizeof all->origin); axis++)
+    for (int axis = 0; axis < 3 && memcmp(sets[i].origin, all->origin, sizeof all->origin) != 0; axis++)
       for (size_t k = 0; k < sets[i].count; k++)
         all->position[axis][first + k] = (float)(conic_gaussians_mean(&sets[i], axis, k) - all->origin[axis]);
   }

@@ -44,7 +44,7 @@ int conic_patch_mesh_bound_side(const conic_patch_mesh *mesh, size_t begin, size
  * which lie along the frame's first two rows; the first, which is the longer, is the fit's unit. Returns 0 where the
  * side has none. */
 int conic_patch_mesh_fit(const conic_patch_mesh *mesh, size_t vertex, size_t begin, size_t end, int degree,
-                         conic_fit *fit, double radii[2], conic_patch_fence *fence);
+                         conic_fit *to, double radii[2], conic_patch_fence *fence);
 
 /* The steepest slope of the polynomial in eight places on an ellipse, all in units of h. */
 double conic_fit_steepest(const conic_fit *fit, int degree, double radius_x, double radius_y);

@@ -68,7 +68,7 @@ static void copy_samples(const conic_splats *from, size_t first, const conic_spl
 static void copy_splat(const conic_splats *from, size_t point, const conic_splats *to, size_t at) {
   copy_samples(from, point, to, at, 1);
   size_t i = conic_clip_find(from, point);
-  if (i < from->n_clips && from->clips[i].splat == point)
+  if (i < from->n_clips && to->clips && from->clips[i].splat == point)
     to->clips[at] = from->clips[i];
 }
 

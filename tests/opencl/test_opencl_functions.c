@@ -259,13 +259,11 @@ static void check_scan(conic_context *context, uint64_t *state) {
     CHECK_OK(conic_queue_room(queue, &sums, n_sums * sizeof *places));
     CHECK_OK(conic_queue_room(queue, &of_places, (n + 1) * sizeof *places));
     CHECK_OK(conic_queue_write(queue, &of_numbers, numbers, n * sizeof *numbers));
-    /* NOLINTBEGIN(bugprone-sizeof-expression): memory of a device is a pointer */
     const conic_argument steps[3][4] = {
         {CONIC_ARGUMENT(n), CONIC_ARGUMENT(of_numbers.memory), CONIC_ARGUMENT(sums.memory)},
         {CONIC_ARGUMENT(n_sums), CONIC_ARGUMENT(sums.memory)},
         {CONIC_ARGUMENT(n), CONIC_ARGUMENT(of_numbers.memory), CONIC_ARGUMENT(sums.memory),
          CONIC_ARGUMENT(of_places.memory)}};
-    /* NOLINTEND(bugprone-sizeof-expression) */
     static const int n_arguments[] = {3, 2, 4};
     for (int step = 0; step < 3; step++)
       CHECK_OK(conic_queue_run(queue, CONIC_STAGE_BIN, opencl->entries[CONIC_ENTRY_SCAN_SUMS + step], steps[step],

@@ -9,6 +9,8 @@ enum { WIDTH = 50, STEP = 16 };
 static conic_context *context;
 
 /* Nothing lies anywhere, so each pixel is as much work. */
+/* NOLINTNEXTLINE(readability-non-const-parameter): other kinds weigh */
+/* NOLINTNEXTLINE(readability-non-const-parameter): other kinds weigh */
 static void weigh_nothing(const conic_source_windows *w, const conic_window *list, size_t n, double *weights) {
   (void)w, (void)list, (void)n, (void)weights;
 }

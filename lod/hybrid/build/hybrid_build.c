@@ -56,7 +56,7 @@ static void group_range(grouping *g, size_t begin, size_t end) {
   }
   for (size_t i = begin; i < end; i++)
     for (size_t k = 0; k < 2; k++)
-      g->clusters->of_face[g->kept->n_surface + 2 * g->order[i] + k] = (uint32_t)g->clusters->n_clusters;
+      g->clusters->of_face[g->kept->n_surface + 2 * (size_t)g->order[i] + k] = (uint32_t)g->clusters->n_clusters;
   g->clusters->is_gathered[g->clusters->n_clusters++] = 1;
 }
 

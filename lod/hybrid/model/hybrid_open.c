@@ -49,7 +49,7 @@ static conic_status read_to(chy_opening *o, uint64_t n_bytes, uint64_t done, uns
       room = 2 * room + n_piece < n_bytes ? 2 * room + n_piece : n_bytes;
       status = conic_memory_grow(context, bytes, (size_t)done, (size_t)room, 1);
     }
-    if (status == CONIC_OK)
+    if (status == CONIC_OK && *bytes)
       memcpy(*bytes + done, piece, n_piece);
     done += n_piece;
     conic_memory_release(context, piece);

@@ -25,7 +25,7 @@ conic_status conic_hybrid_pile_add(conic_context *context, conic_hybrid_pile *pi
 /* Adds a node over those that are added next. When all of these are there, ending it drops it again if there are fewer
  * than two. */
 conic_status conic_hybrid_pile_begin_node(conic_context *context, conic_hybrid_pile *pile, uint32_t *node);
-void conic_hybrid_pile_end_node(conic_hybrid_pile *pile, uint32_t node);
+void conic_hybrid_pile_end_node(conic_hybrid_pile *p, uint32_t i);
 
 /* Gives the pile to a model; the rest of the model is known. Errors: IO, MEMORY. */
 conic_status conic_hybrid_pile_finish(conic_hybrid_pile *pile, conic_hybrid *hybrid);
@@ -39,8 +39,8 @@ typedef struct conic_hybrid_store conic_hybrid_store;
 
 /* Takes over an open file, on failure too; `data_at` is where its first chunk lies. At most cache_bytes are kept, not
  * counting what is held; 0: any number. Errors: MEMORY. */
-conic_status conic_hybrid_store_open(const conic_hybrid *hybrid, const char *name, conic_ranges *ranges,
-                                     uint64_t data_at, uint64_t cache_bytes, conic_hybrid_store **store);
+conic_status conic_hybrid_store_open(const conic_hybrid *h, const char *name, conic_ranges *ranges, uint64_t data_at,
+                                     uint64_t cache_bytes, conic_hybrid_store **made);
 void conic_hybrid_store_close(conic_hybrid_store *store); /* null is allowed */
 
 /* Brings chunks into memory, where they stay until they are let go. Without a store there is nothing to do. On failure

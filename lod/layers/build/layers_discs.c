@@ -240,6 +240,7 @@ static float error_of_disc(disc_search *p, float enough, uint32_t *last) {
   }
   if (least <= enough)
     return least;
+  /* NOLINTNEXTLINE(clang-analyzer-core.*): rows were looked for above */
   if (p->rows.n == 0) {
     const conic_layers_disc first = disc_of(p->chosen, conic_thinner_first(p->chosen->thinner));
     return error_from_one(p->disc, &first, HUGE_VALF, 1);

@@ -125,7 +125,7 @@ static conic_status unpack_arrays(unpacking *u, int has_samples, conic_layers_no
 }
 
 static conic_status unpack(unpacking *u, int depth, conic_layers_node **node) {
-  uint64_t has_children;
+  uint64_t has_children = 0;
   conic_layers_node *made = conic_memory_allocate_zeroed(u->pool->context, 1, sizeof *made);
   if (!made)
     return CONIC_ERROR_MEMORY;

@@ -153,7 +153,7 @@ static void find_means(const conic_layers_standing *s, const conic_layers_plan *
   for (size_t i = g->begin; i < g->end; i++) {
     const disc_member *m = &s->members[i];
     const uint8_t *color = conic_layers_sample_at(samples, plan->sample_bytes, m->i)->color;
-    double w = (double)m->radius * (double)m->radius + 1e-30, side = w;
+    double w = (double)m->radius * (double)m->radius + 1e-30, side;
     float along = 0.0f;
     for (int axis = 0; axis < 3 && turns; axis++)
       along += m->normal[axis] * first->normal[axis];

@@ -317,7 +317,7 @@ void conic_thinner_beside(const conic_thinner *thinner, const float at[3], int i
   rows->n = 0;
   for (int32_t z = low[2]; z <= high[2]; z++)
     for (int32_t y = low[1]; y <= high[1] && low[0] <= high[0]; y++) {
-      const uint32_t *first = thinner->cells + (z * thinner->cells_on[1] + y) * thinner->cells_on[0];
+      const uint32_t *first = thinner->cells + ((ptrdiff_t)z * thinner->cells_on[1] + y) * thinner->cells_on[0];
       const conic_thinner_row row = {first[low[0]], first[high[0] + 1]};
       if (thinner->shift > 0)
         list_runs(thinner, from, to, row, rows);

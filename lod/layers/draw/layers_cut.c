@@ -151,6 +151,7 @@ void conic_layers_cut_release(conic_context *context, conic_layers_cut *cut) {
   memset(cut, 0, sizeof *cut);
 }
 
+/* NOLINTNEXTLINE(readability-non-const-parameter): other walks reach an error */
 static uint64_t count_splats(void *data, double error_px, double *reached_px) {
   cut_walk *w = data;
   (void)reached_px;

@@ -73,7 +73,7 @@ typedef struct conic_layers_gathering {
 } conic_layers_gathering;
 
 /* About how much of a chosen place is taken: 0 to 1. */
-double conic_layers_share_of_place(const conic_layers_gathering *gathering, uint32_t i_place);
+double conic_layers_share_of_place(const conic_layers_gathering *asked, uint32_t i_place);
 
 /* Fills the set with what is to be drawn of the places that are shown or grazing. Hidden ones give nothing. Each cloud
  * is read once, in the order of the file, and no more at a time than the cache holds. Errors: as

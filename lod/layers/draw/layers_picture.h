@@ -16,23 +16,22 @@ typedef struct conic_layers_tally {
  * many bytes. Afterwards only layers and renderer must stay. Until the picture ends, the layers draw no other. Errors:
  * as conic_layers_draw. */
 conic_status conic_layers_picture_begin(conic_layers *layers, conic_renderer *renderer, const conic_camera *camera,
-                                        const conic_render_options *render, const conic_layers_draw_options *options,
+                                        const conic_render_options *given, const conic_layers_draw_options *wanted,
                                         uint64_t image_bytes, conic_layers_picture **picture);
-void conic_layers_picture_end(conic_layers_picture *picture); /* null is allowed */
+void conic_layers_picture_end(conic_layers_picture *d); /* null is allowed */
 
 /* Draws a window's pixels into an image of its size. A window is all of the picture; or it lies in one of the bands in
  * which conic_render_samples draws it, and begins at a multiple of CONIC_WINDOW_STEP pixels there. Where windows make
  * up the picture, the sums of their statistics and tallies are the picture's; *tally grows. The layers leave
  * `other_bytes` of their memory free. Errors: as conic_layers_draw. */
-conic_status conic_layers_picture_draw(conic_layers_picture *picture, const conic_window *window, uint64_t other_bytes,
+conic_status conic_layers_picture_draw(conic_layers_picture *d, const conic_window *window, uint64_t other_bytes,
                                        conic_image *image, conic_render_statistics *statistics,
                                        conic_layers_tally *tally);
 
 /* About how many splats each of the windows has. Windows do not overlap, and neither their first nor their last rows
  * ever decrease. */
-void conic_layers_picture_weigh(const conic_layers_picture *picture, const conic_window *list, size_t n,
-                                double *weights);
+void conic_layers_picture_weigh(const conic_layers_picture *d, const conic_window *list, size_t n, double *weights);
 
 /* Tells what the picture took, by these sums. */
-void conic_layers_picture_tell(conic_layers_picture *picture, const conic_render_statistics *statistics,
+void conic_layers_picture_tell(conic_layers_picture *d, const conic_render_statistics *statistics,
                                const conic_layers_tally *tally, conic_layers_drawn *drawn);

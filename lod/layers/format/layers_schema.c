@@ -167,6 +167,7 @@ int conic_layers_schema_value(const conic_layers_schema *schema, const char *nam
 
 double conic_layers_number_get(const conic_layers_attribute *attribute, const void *from) {
   size_t n_bytes = layers_number_bytes(attribute->type);
+  /* NOLINTNEXTLINE(clang-analyzer-core.*): every type has bytes */
   uint64_t bits = conic_load_bits(from, n_bytes), sign = UINT64_C(1) << (8 * n_bytes - 1);
   double number = (double)bits;
   if (attribute->type == CONIC_LAYERS_FLOAT)

@@ -1,5 +1,5 @@
 /* Options of callers that were compiled with another version: smaller or larger than the library's own. */
-#define _DEFAULT_SOURCE /* for MAP_ANON */
+#define _DEFAULT_SOURCE /* for MAP_ANON; NOLINT(bugprone-reserved-identifier,cert-dcl*) */
 #if defined(_WIN32)
 #include <windows.h>
 #else

@@ -32,7 +32,7 @@ static void count_example(conic_context *context, const example *e) {
   hierarchy_parts parts = {.folder = ""};
   conic_layers *layers;
   conic_splats splats;
-  const char *path = parts.first;
+  const char *path;
   if (strcmp(e->name, "copc") == 0)
     path = files_write_bytes("x.copc.laz", e->bytes, e->n_bytes);
   else {

@@ -372,7 +372,7 @@ int main(void) {
   CHECK_OK(conic_hybrid_describe(s.hybrid, &s.info));
   s.options.near_z = s.info.near_z;
   s.is_seen = malloc(s.info.n_clusters);
-  s.chosen = malloc(s.info.n_clusters * sizeof *s.chosen); /* NOLINT(bugprone-sizeof-expression): pointers */
+  s.chosen = malloc(s.info.n_clusters * sizeof *s.chosen);
   s.stages = malloc(s.info.n_clusters * sizeof *s.stages);
   s.counts = malloc(s.info.n_clusters * sizeof *s.counts);
   if (!s.is_seen || !s.chosen || !s.stages || !s.counts)

@@ -253,7 +253,7 @@ static void put_line(conic_triangles *mesh, int line) {
   double height = is_lid ? 1.0 : is_floor ? -1.0 : 1.0 - 2.0 * (line - RINGS - 1) / ROWS;
   for (int column = 0; column < CAN_AROUND; column++) {
     double around = 2.0 * 3.14159265358979 * column / CAN_AROUND;
-    size_t i = (size_t)(line * CAN_AROUND + column);
+    size_t i = (size_t)line * CAN_AROUND + (size_t)column;
     const double way[3] = {cos(around), 0.0, sin(around)};
     for (int axis = 0; axis < 3; axis++) {
       mesh->position[axis][i] = (float)(axis == 1 ? height : radius * way[axis]);
