@@ -76,10 +76,11 @@ static int is_candidate_nearer(const neighbour_search *s, size_t a, size_t b) {
          (s->distances2[a] == s->distances2[b] && lies_before(s->tree, s->slots[a], s->slots[b]));
 }
 
+/* NOLINTBEGIN(clang-analyzer-core.*): it does not see what memcpy and vectors write */
 /* Lists the candidates, nearest first. Candidates with the same key share a place, from which on they are put in
  * order. */
 static void sort_candidates(const neighbour_search *s, uint8_t sorted[MOST_CANDIDATES]) {
-  candidate_order order; /* whose places the analyzer does not see written */
+  candidate_order order;
   uint8_t n_at[MOST_CANDIDATES] = {0};
   for (size_t i = 0; i < s->n; i++)
     order.keys[i] = (float)s->distances2[i];
@@ -88,9 +89,9 @@ static void sort_candidates(const neighbour_search *s, uint8_t sorted[MOST_CANDI
   for (size_t begin = 0; begin < s->n; begin += BLOCK_KEYS)
     rank_block(&order, begin, s->n);
   for (size_t i = 0; i < s->n; i++) {
-    size_t first = (size_t)order.places[i], place = first + n_at[first]++; /* NOLINT(clang-analyzer-core.*) */
+    size_t first = (size_t)order.places[i], place = first + n_at[first]++;
     for (; place > first && is_candidate_nearer(s, i, sorted[place - 1]); place--)
-      sorted[place] = sorted[place - 1]; /* NOLINT(clang-analyzer-core.*) */
+      sorted[place] = sorted[place - 1];
     sorted[place] = (uint8_t)i;
   }
 }
@@ -106,6 +107,7 @@ static size_t take_candidates(const neighbour_search *s, uint32_t *slots, double
   }
   return n;
 }
+/* NOLINTEND(clang-analyzer-core.*) */
 
 /* Keeps the k nearest of more candidates. */
 static void cut_candidates(neighbour_search *s) {

@@ -26,7 +26,8 @@ static void read_otherwise(const fuzz_input *input) {
   conic_gaussian_gradient gradient;
   conic_gaussian_weights weights;
   if (conic_gaussian_gradient_read(input->context, input->path, &gradient) == CONIC_OK)
-    FUZZ_CHECK(gradient.sh_degree >= 0 && gradient.sh_degree <= CONIC_MAX_SH_DEGREE && gradient.lacks < 31);
+    FUZZ_CHECK(gradient.sh_degree >= 0 && gradient.sh_degree <= CONIC_MAX_SH_DEGREE &&
+               gradient.lacks < (1u << CONIC_N_GRADIENT_KINDS) - 1);
   conic_gaussian_gradient_release(input->context, &gradient);
   if (conic_gaussian_weights_read(input->context, input->path, &weights) == CONIC_OK)
     FUZZ_CHECK(weights.width > 0 && weights.height > 0);

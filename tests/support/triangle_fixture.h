@@ -32,8 +32,8 @@ static inline conic_triangles triangles_torus(fixture *f, int n, int m, double t
       uint32_t here = (uint32_t)(i * m + j), right = (uint32_t)((i + 1) % n * m + j);
       uint32_t up = (uint32_t)(i * m + (j + 1) % m), both = (uint32_t)((i + 1) % n * m + (j + 1) % m);
       triangles_vertex(&t, here, r * cos(a), tube * sin(b), -r * sin(a));
-      triangles_corner(&t, 2 * here, here, right, both);
-      triangles_corner(&t, 2 * here + 1, here, both, up);
+      triangles_corner(&t, (size_t)here * 2, here, right, both);
+      triangles_corner(&t, (size_t)here * 2 + 1, here, both, up);
     }
   return t;
 }
