@@ -123,6 +123,6 @@ static inline int fuzz_model(const uint8_t *bytes, size_t n_bytes, conic_model_k
   conic_model_release(input.context, &model);
   fuzz_close(&input, status, 1); /* a kind of Assimp's, where that is not there */
   if (field[0])
-    fuzz_field(bytes, n_bytes, field, n_points, kind == CONIC_MODEL_LAS);
+    fuzz_field(bytes, n_bytes, field, n_points, kind == CONIC_MODEL_LAS || kind == CONIC_MODEL_E57);
   return is_mine || status != CONIC_OK ? 0 : -1; /* -1: not kept in the corpus */
 }
