@@ -42,6 +42,10 @@ run 0 layer gyroid.ply gyroid.ply -o other.lpc --cloud-size 512 --quantum 0.01 -
 [[ $(value points_out twice.json) == 120000 && $(value quantum twice.json) == 0.01 ]] || fail "two inputs"
 is_sound other.lpc
 
+# However few samples there are for the memory, all threads have some to grow: more than a turn of one branch each.
+run 0 bench --command "layer gyroid.ply -o other.lpc -q" --repeat 1 --simulate-threads 2
+[[ $(awk '/grow groups/ { print $6 }' out) -gt 2 ]] || fail "one thread grows all: $(cat out)"
+
 # Of several inputs, what has no colours is white beside what has; the other way round nobody can know in time.
 printf '0 0 0\n1 0 0\n0 1 0\n1 1 0\n' > grey.xyz
 printf '5 0 0 255 0 0\n6 0 0 255 0 0\n5 1 0 255 0 0\n6 1 0 255 0 0\n' > red.xyz

@@ -63,13 +63,16 @@ static size_t bytes_in_chunk(const conic_layers_plan *plan) {
   return 2 * plan->sample_bytes + 2 * sizeof(uint64_t) + (plan->has_bare ? 28 : 0);
 }
 
-/* How many samples a kept branch has at most. It takes no more than seconds to grow, is no more than the fraction that
- * may be lost, and leaves enough branches for all threads. Smaller branches would keep more for each sample. */
-static uint64_t most_in_kept(const conic_layers_builder *builder, uint64_t n_workers) {
-  enum { MOST = 1 << 19, LEAST_BRANCHES = 32, BRANCHES_A_THREAD = 8 };
-  uint64_t n_branches = BRANCHES_A_THREAD * n_workers > LEAST_BRANCHES ? BRANCHES_A_THREAD * n_workers : LEAST_BRANCHES;
-  uint64_t n = builder->plan.n_samples / (n_branches * (builder->team ? (uint64_t)builder->team->count : 1));
-  return n < MOST ? n : MOST;
+/* How many samples a chunk has at most, however much memory there is: few enough that all threads have chunks. Where
+ * branches are kept, each is a chunk. It takes no more than seconds to grow, and is no more than the fraction that may
+ * be lost. Smaller chunks would take and keep more for each sample. */
+static uint64_t most_to_share(const conic_layers_builder *builder, uint64_t n_workers) {
+  enum { MOST = 1 << 19, LEAST_BRANCHES = 32, CHUNKS_A_THREAD = 8 };
+  uint64_t n_chunks = n_workers > 1 ? CHUNKS_A_THREAD * n_workers : 1;
+  if (builder->kept.key && n_chunks < LEAST_BRANCHES)
+    n_chunks = LEAST_BRANCHES;
+  uint64_t n = builder->plan.n_samples / (n_chunks * (builder->team ? (uint64_t)builder->team->count : 1));
+  return n < MOST || !builder->kept.key ? n : MOST;
 }
 
 /* As many workers as there are threads, if there is memory for them. The more memory, the larger are the chunks. */
@@ -82,8 +85,8 @@ static conic_layers_growth plan_growth(conic_layers_builder *builder) {
   n_workers = n_workers < n_threads ? n_workers : n_threads;
   n_workers = n_workers ? n_workers : 1;
   uint64_t left = bytes / n_workers > worker ? bytes / n_workers - worker : 0, most = left / sample;
-  if (builder->kept.key && most > most_in_kept(builder, n_workers))
-    most = most_in_kept(builder, n_workers);
+  if (most > most_to_share(builder, n_workers))
+    most = most_to_share(builder, n_workers);
   return (conic_layers_growth){.n_workers = (int)n_workers,
                                .most = most > least ? most : least,
                                .kept = &builder->kept,
