@@ -242,6 +242,7 @@ typedef struct spread_work {
   conic_estimate *estimate;
   const conic_neighbourhood *neighbourhood;
   double *spacings;
+  double *lengths;    /* the longer axis of each slot's outline, -1 without one */
   double usual_reach; /* of a cell of the median spacing */
   double usual_dot;   /* the longer axis of most dots … */
   int are_dots;       /* … which most points are */
@@ -335,17 +336,35 @@ static conic_status find_median(conic_context *context, const spread_work *work,
   return CONIC_OK;
 }
 
-/* The part of its size to which the neighbours' sizes cut a slot's outline: 1 for most. */
+static void measure_slots(void *data, size_t begin, size_t end) {
+  const spread_work *work = data;
+  for (size_t slot = begin; slot < end; slot++) {
+    size_t point = work->neighbourhood->tree.point_of_slot[slot];
+    work->lengths[slot] = is_spread(work->estimate, point) ? longer_axis(work->estimate, point) : -1.0;
+  }
+}
+
+/* The part of its size to which the neighbours' sizes cut a slot's outline: 1 for most, of which counting is enough to
+ * know that they do not exceed the upper median so far. */
 static double part_left(const spread_work *work, size_t slot) {
   const conic_neighbourhood *neighbourhood = work->neighbourhood;
-  const uint32_t *list = conic_neighbourhood_of(neighbourhood, slot), *points = neighbourhood->tree.point_of_slot;
-  double sorted[CONIC_MAX_NEIGHBOURS];
-  size_t n = 0;
-  for (size_t i = 0; i < neighbourhood->n_neighbours; i++)
-    if (is_spread(work->estimate, points[list[i]]))
-      sort_in(sorted, n++, longer_axis(work->estimate, points[list[i]]));
-  double most = n ? GREATEST_EXCESS * sorted[n / 2] : HUGE_VAL, own = longer_axis(work->estimate, points[slot]);
-  if ((work->are_dots || work->estimate->dot[points[slot]] != 0.0f) && most > GREATEST_DOT * work->usual_dot)
+  const uint32_t *list = conic_neighbourhood_of(neighbourhood, slot);
+  double sorted[CONIC_MAX_NEIGHBOURS], own = work->lengths[slot], most = HUGE_VAL;
+  size_t n = 0, n_exceeded = 0;
+  for (size_t i = 0; i < neighbourhood->n_neighbours; i++) {
+    double length = work->lengths[list[i]];
+    n += length >= 0.0;
+    n_exceeded += (length >= 0.0) & (GREATEST_EXCESS * length < own);
+  }
+  if (n_exceeded > n / 2) {
+    n = 0;
+    for (size_t i = 0; i < neighbourhood->n_neighbours; i++)
+      if (work->lengths[list[i]] >= 0.0)
+        sort_in(sorted, n++, work->lengths[list[i]]);
+    most = GREATEST_EXCESS * sorted[n / 2];
+  }
+  int is_dot = work->are_dots || work->estimate->dot[neighbourhood->tree.point_of_slot[slot]] != 0.0f;
+  if (is_dot && most > GREATEST_DOT * work->usual_dot)
     most = GREATEST_DOT * work->usual_dot;
   return own > most ? most / own : 1.0;
 }
@@ -353,8 +372,7 @@ static double part_left(const spread_work *work, size_t slot) {
 static void compare_slots(void *data, size_t begin, size_t end) {
   const spread_work *work = data;
   for (size_t slot = begin; slot < end; slot++)
-    if (is_spread(work->estimate, work->neighbourhood->tree.point_of_slot[slot]))
-      work->spacings[slot] = part_left(work, slot);
+    work->spacings[slot] = work->lengths[slot] >= 0.0 ? part_left(work, slot) : 1.0;
 }
 
 static void cut_points(void *data, size_t begin, size_t end) {
@@ -363,7 +381,7 @@ static void cut_points(void *data, size_t begin, size_t end) {
   for (size_t point = begin; point < end; point++)
     if (is_spread(estimate, point)) {
       float part = (float)work->spacings[work->neighbourhood->tree.slot_of_point[point]];
-      for (int axis = 0; axis < 3; axis++) {
+      for (int axis = 0; axis < 3 && part < 1.0f; axis++) {
         estimate->tangent_u[axis][point] *= part;
         estimate->tangent_v[axis][point] *= part;
       }
@@ -377,15 +395,20 @@ static conic_status bound_by_neighbours(conic_context *context, spread_work *wor
   double part = 0.0;
   conic_status status = find_median(context, work, dot_at, &work->usual_dot, &part);
   work->are_dots = part > 0.5;
+  work->lengths = conic_memory_allocate(context, tree->n_slots, sizeof *work->lengths);
+  if (status == CONIC_OK)
+    status =
+        work->lengths ? conic_slots_for(context, tree->n_slots, measure_slots, work, 1.0, 1.0) : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK)
     status = conic_slots_share(context, tree->n_slots, compare_slots, work, 1.0, 1.0, &column, 1);
+  conic_memory_release(context, work->lengths);
   return status == CONIC_OK ? conic_slots_for(context, tree->n_points, cut_points, work, 1.0, 1.0) : status;
 }
 
 conic_status conic_estimate_from_neighbours(conic_context *context, conic_estimate *estimate,
                                             /* NOLINTNEXTLINE(readability-non-const-parameter): threads write to it */
                                             const conic_neighbourhood *neighbourhood, double *spacings) {
-  spread_work work = {estimate, neighbourhood, spacings, HUGE_VAL, HUGE_VAL, 0};
+  spread_work work = {estimate, neighbourhood, spacings, NULL, HUGE_VAL, HUGE_VAL, 0};
   double part;
   if (estimate->dot) {
     conic_status found = find_median(context, &work, spacing_at, &work.usual_reach, &part);

@@ -166,6 +166,23 @@ static void check_sizes_are_alike(conic_context *context) {
   conic_model_release(context, &model);
 }
 
+/* Where ground reaches into a denser bush, what is larger than twice the middle of those around it is cut to that. */
+static void check_ground_in_a_bush(conic_context *context) {
+  conic_model model = outlines_model(context, N + 6000, 0);
+  uint64_t state = 10;
+  int n_small = 0;
+  add_in_plane(&model, &state, N, 0.0, 0.1);
+  add_in_ball(&model, &state, 6000, 6.0);
+  find_dots(context, &model);
+  for (size_t i = 0; i < N; i++) {
+    outlines_splat s = outlines_get(&model.points, i);
+    int is_near = hypot(s.center[0] - 40, s.center[1] - 50) < 9.0 && model.points.dot[i] == 0.0f;
+    n_small += is_near && s.a < 1.1;
+  }
+  CHECK(n_small >= 4);
+  conic_model_release(context, &model);
+}
+
 /* The same for any number of threads; a point far from all is one; nothing is without the option. */
 static void check_option(conic_context *context) {
   conic_context *alone = check_context(1);
@@ -324,6 +341,7 @@ int main(void) {
   check_wire(context);
   check_what_dots_get(context);
   check_sizes_are_alike(context);
+  check_ground_in_a_bush(context);
   check_option(context);
   check_facing(context);
   check_column(context);
