@@ -195,13 +195,11 @@ static void find_local_h(void *data, size_t i_item) {
   size_t end = (i_item + 1) * CHUNK < tree->n_slots ? (i_item + 1) * CHUNK : tree->n_slots;
   uint32_t slots[64];
   double distances2[64];
+  conic_neighbours_around around = {0};
   size_t n = 0;
   for (size_t slot = i_item * CHUNK; slot < end; slot++) {
-    const double query[3] = {(double)tree->position[0][slot], (double)tree->position[1][slot],
-                             (double)tree->position[2][slot]};
     double bound2 = n ? conic_neighbours_bound2(tree, slots, n, slot - 1, slot) : HUGE_VAL;
-    n = conic_neighbours_nearest(tree, query, (uint32_t)slot, (size_t)surface->options.n_local, bound2, slots,
-                                 distances2);
+    n = conic_neighbours_of_slot(tree, slot, (size_t)surface->options.n_local, bound2, &around, slots, distances2);
     surface->h[slot] = n ? (float)(sqrt(distances2[n - 1]) / surface->options.neglect) : 0.0f;
   }
 }

@@ -134,15 +134,20 @@ static void search_leaf(neighbour_search *s, size_t i_leaf) {
     cut_candidates(s);
 }
 
+static void begin_search(neighbour_search *s, const conic_neighbours *tree, const double query[3], uint32_t except,
+                         size_t k, double limit2) {
+  s->tree = tree;
+  memcpy(s->query, query, sizeof s->query);
+  s->except = except;
+  s->k = k;
+  s->n = 0;
+  s->limit2 = limit2;
+}
+
 size_t conic_neighbours_nearest(const conic_neighbours *tree, const double query[3], uint32_t except, size_t k,
                                 double limit2, uint32_t *slots, double *distances2) {
   neighbour_search s;
-  s.tree = tree;
-  memcpy(s.query, query, sizeof s.query);
-  s.except = except;
-  s.k = k;
-  s.n = 0;
-  s.limit2 = limit2;
+  begin_search(&s, tree, query, except, k, limit2);
   struct {
     size_t i_node;
     double distance2;
@@ -170,6 +175,86 @@ size_t conic_neighbours_nearest(const conic_neighbours *tree, const double query
       search_leaf(&s, i_node - (tree->n_leaves - 1));
   }
   return take_candidates(&s, slots, distances2);
+}
+
+/* --- slots of one leaf after the other --- */
+
+/* The reach of the list, as the square of a multiple of the distance to the last neighbour that one slot has. */
+static const double AROUND_REACH2 = 4.0;
+
+/* Lists the leaves within reach of a leaf's box. Rounding is monotonic: the distance of two boxes is not above that of
+ * a point in one of them from the other. What does not fit leaves none listed. */
+static void list_around(const conic_neighbours *tree, size_t i_leaf, double reach2, conic_neighbours_around *around) {
+  size_t stack[MAX_DEPTH + 2];
+  int n_stack = 0;
+  const float *own = tree->boxes[tree->n_leaves - 1 + i_leaf];
+  around->begin = conic_neighbours_leaf_begin(tree, i_leaf);
+  around->end = conic_neighbours_leaf_begin(tree, i_leaf + 1);
+  around->reach2 = reach2;
+  around->n = 0;
+  stack[n_stack++] = 0;
+  while (n_stack > 0) {
+    size_t i_node = stack[--n_stack];
+    const float *box = tree->boxes[i_node];
+    double distance2 = 0.0;
+    for (int axis = 0; axis < 3; axis++) {
+      double above = (double)box[axis] - (double)own[3 + axis], below = (double)own[axis] - (double)box[3 + axis];
+      double outside = above > below ? above : below;
+      outside = outside > 0.0 ? outside : 0.0;
+      distance2 += outside * outside;
+    }
+    if (!(distance2 <= reach2))
+      continue;
+    if (i_node < tree->n_leaves - 1) {
+      stack[n_stack++] = 2 * i_node + 2;
+      stack[n_stack++] = 2 * i_node + 1;
+      continue;
+    }
+    if (around->n == CONIC_MOST_AROUND) {
+      around->reach2 = -1.0;
+      return;
+    }
+    memcpy(around->boxes[around->n], box, sizeof around->boxes[0]);
+    around->leaves[around->n++] = (uint32_t)(i_node - (tree->n_leaves - 1));
+  }
+}
+
+static void search_around(neighbour_search *s, const conic_neighbours_around *around) {
+  uint32_t leaves[CONIC_MOST_AROUND + 1];
+  double near2[CONIC_MOST_AROUND + 1];
+  size_t n = 0;
+  for (size_t i = 0; i < around->n; i += 2) {
+    size_t first = i + 1 < around->n || i == 0 ? i : i - 1; /* the last pair may have one again */
+    const box_pair both = box_distances2((const float(*)[6])around->boxes + first, s->query);
+    for (size_t k = i - first; k < 2; k++) {
+      leaves[n] = around->leaves[first + k];
+      near2[n] = both[k];
+      n += both[k] <= s->limit2;
+    }
+  }
+  for (size_t i = 0; i < n; i++)
+    if (near2[i] <= s->limit2)
+      search_leaf(s, leaves[i]);
+}
+
+size_t conic_neighbours_of_slot(const conic_neighbours *tree, size_t slot, size_t k, double limit2,
+                                conic_neighbours_around *around, uint32_t *slots, double *distances2) {
+  neighbour_search s;
+  const double query[3] = {(double)tree->position[0][slot], (double)tree->position[1][slot],
+                           (double)tree->position[2][slot]};
+  int is_same = slot >= around->begin && slot < around->end;
+  if (is_same && limit2 <= around->reach2) {
+    begin_search(&s, tree, query, (uint32_t)slot, k, limit2);
+    search_around(&s, around);
+    return take_candidates(&s, slots, distances2);
+  }
+  size_t n = conic_neighbours_nearest(tree, query, (uint32_t)slot, k, limit2, slots, distances2);
+  if (!is_same && n == k && k > 0) {
+    size_t i_leaf = (size_t)((uint64_t)slot * (uint64_t)tree->n_leaves / (uint64_t)tree->n_slots);
+    i_leaf += conic_neighbours_leaf_begin(tree, i_leaf + 1) <= slot;
+    list_around(tree, i_leaf, AROUND_REACH2 * distances2[n - 1], around);
+  }
+  return n;
 }
 
 double conic_neighbours_bound2(const conic_neighbours *tree, const uint32_t *nearest, size_t n, size_t other,

@@ -37,6 +37,21 @@ enum { CONIC_MOST_NEAREST = 64 };
 size_t conic_neighbours_nearest(const conic_neighbours *tree, const double query[3], uint32_t except, size_t k,
                                 double limit2, uint32_t *slots, double *distances2);
 
+/* The leaves around one leaf, found once for all of its slots. Zero is none. */
+enum { CONIC_MOST_AROUND = 64 };
+typedef struct conic_neighbours_around {
+  size_t begin, end; /* the leaf's slots */
+  double reach2;     /* leaves no farther from the leaf's box than that, squared, are listed */
+  size_t n;
+  uint32_t leaves[CONIC_MOST_AROUND];
+  float boxes[CONIC_MOST_AROUND][6]; /* of each */
+} conic_neighbours_around;
+
+/* The nearest of a slot, itself excepted, as conic_neighbours_nearest finds them. That is quicker where slots follow
+ * each other, with the same `around`, and a `limit2` from the last one's nearest. */
+size_t conic_neighbours_of_slot(const conic_neighbours *tree, size_t slot, size_t k, double limit2,
+                                conic_neighbours_around *around, uint32_t *slots, double *distances2);
+
 /* The squared distance from a query to a slot, with the bits that conic_neighbours_nearest gives. */
 static inline double conic_neighbours_distance2(const conic_neighbours *tree, size_t slot, const double query[3]) {
   double x = (double)tree->position[0][slot] - query[0];
