@@ -17,6 +17,7 @@ conic_status conic_workspaces_create(conic_context *context, conic_workspace **w
 void conic_workspaces_release(conic_context *context, conic_workspace *workspaces) {
   for (int i = 0; workspaces && i < conic_context_threads(context); i++) {
     conic_memory_release_these(context, workspaces[i].shared.sources, workspaces[i].single.sources,
+                               workspaces[i].shared.samples.offset[0], workspaces[i].single.samples.offset[0],
                                workspaces[i].near.offset[0], workspaces[i].other_near.offset[0]);
   }
   conic_memory_release(context, workspaces);
@@ -41,9 +42,8 @@ conic_status conic_workspaces_count(conic_context *context, conic_workspace *wor
 }
 
 /* Makes room for `n` neighbours and their padding: one block, the arrays side by side. */
-static int reserve_near(conic_workspace *workspace, size_t n) {
+static int reserve_near(conic_workspace *workspace, conic_near *near, size_t n) {
   enum { N_ARRAYS = 9 };
-  conic_near *near = &workspace->near;
   if (n + CONIC_NEAR_LANES <= near->capacity)
     return 1;
   size_t capacity = (n + n / 2 + 128) / CONIC_NEAR_LANES * CONIC_NEAR_LANES;
@@ -107,6 +107,50 @@ static int append_cluster(size_t i_node, conic_workspace *workspace, conic_candi
   return 1;
 }
 
+/* A candidate's place, scale and mass. */
+static inline void look_up(const conic_surface *surface, uint32_t source, double place[3], double *h, double *mass) {
+  if (source & CONIC_CLUSTER_BIT) {
+    size_t i = source & ~CONIC_CLUSTER_BIT;
+    memcpy(place, surface->clusters.centroid[i], 3 * sizeof place[0]);
+    *h = (double)surface->clusters.h[i];
+    *mass = surface->clusters.mass[i];
+    return;
+  }
+  conic_vector_at(surface->tree.position, source, place);
+  *h = (double)surface->h[source];
+  *mass = (double)surface->mass[source];
+}
+
+static void pad(conic_near *near) {
+  near->n_padded = (near->n + CONIC_NEAR_LANES - 1) / CONIC_NEAR_LANES * CONIC_NEAR_LANES;
+  for (size_t i = near->n; i < near->n_padded; i++) {
+    for (int axis = 0; axis < 3; axis++)
+      near->offset[axis][i] = near->normal[axis][i] = 0.0;
+    near->mass[i] = near->inverse_h2[i] = 0.0;
+  }
+}
+
+/* Puts what is known of all candidates side by side, and behind them what is near nothing. */
+static void look_up_all(const conic_surface *surface, conic_workspace *workspace, conic_candidates *candidates) {
+  conic_near *all = &candidates->samples;
+  all->n = all->n_padded = 0;
+  if (!reserve_near(workspace, all, candidates->n))
+    return;
+  for (size_t i = 0; i < candidates->n; i++) {
+    double place[3];
+    look_up(surface, candidates->sources[i], place, &all->inverse_h2[i], &all->mass[i]);
+    for (int axis = 0; axis < 3; axis++)
+      all->offset[axis][i] = place[axis];
+    all->sources[i] = candidates->sources[i];
+  }
+  all->n = candidates->n;
+  pad(all);
+  for (size_t i = all->n; i < all->n_padded; i++) {
+    all->inverse_h2[i] = NAN;
+    all->sources[i] = 0;
+  }
+}
+
 void conic_surface_gather(const conic_surface *surface, const double box[6], double margin, conic_workspace *workspace,
                           conic_candidates *candidates) {
   const conic_neighbours *tree = &surface->tree;
@@ -134,6 +178,7 @@ void conic_surface_gather(const conic_surface *surface, const double box[6], dou
       stack[n_stack++] = 2 * i_node + 1;
     }
   }
+  look_up_all(surface, workspace, candidates);
 }
 
 void conic_surface_share_leaf(const conic_surface *surface, size_t i_leaf, conic_workspace *workspace) {
@@ -147,29 +192,6 @@ void conic_surface_share_leaf(const conic_surface *surface, size_t i_leaf, conic
     margin = own > margin ? own : margin;
   }
   conic_surface_gather(surface, box, margin, workspace, &workspace->shared);
-}
-
-/* A candidate's place, scale and mass. */
-static inline void look_up(const conic_surface *surface, uint32_t source, double place[3], double *h, double *mass) {
-  if (source & CONIC_CLUSTER_BIT) {
-    size_t i = source & ~CONIC_CLUSTER_BIT;
-    memcpy(place, surface->clusters.centroid[i], 3 * sizeof place[0]);
-    *h = (double)surface->clusters.h[i];
-    *mass = surface->clusters.mass[i];
-    return;
-  }
-  conic_vector_at(surface->tree.position, source, place);
-  *h = (double)surface->h[source];
-  *mass = (double)surface->mass[source];
-}
-
-static void pad(conic_near *near) {
-  near->n_padded = (near->n + CONIC_NEAR_LANES - 1) / CONIC_NEAR_LANES * CONIC_NEAR_LANES;
-  for (size_t i = near->n; i < near->n_padded; i++) {
-    for (int axis = 0; axis < 3; axis++)
-      near->offset[axis][i] = near->normal[axis][i] = 0.0;
-    near->mass[i] = near->inverse_h2[i] = 0.0;
-  }
 }
 
 static void fetch_normals(const conic_surface *surface, conic_near *near) {
@@ -205,29 +227,13 @@ static void drop_backs(const conic_surface *surface, const float side[3], conic_
 void conic_surface_select(const conic_surface *surface, const conic_candidates *candidates, const double r[3],
                           double margin, uint32_t except, conic_workspace *workspace) {
   conic_near *near = &workspace->near;
+  const conic_near *all = &candidates->samples;
   near->n = near->n_padded = 0;
-  if (!reserve_near(workspace, candidates->n))
+  if (!reserve_near(workspace, near, all->n))
     return;
-  size_t n = 0;
-  for (size_t i = 0; i < candidates->n; i++) {
-    uint32_t source = candidates->sources[i];
-    double place[3], h, mass;
-    look_up(surface, source, place, &h, &mass);
-    double x = place[0] - r[0], y = place[1] - r[1], z = place[2] - r[2];
-    double reach = surface->options.neglect * h + margin;
-    near->offset[0][n] = x;
-    near->offset[1][n] = y;
-    near->offset[2][n] = z;
-    near->mass[n] = mass;
-    near->inverse_h2[n] = h;
-    near->sources[n] = source;
-    n += (x * x + y * y) + z * z < reach * reach && source != except; /* false for a scale that is NaN */
-  }
-  near->n = n;
+  surface->loops.select(all, r, surface->options.neglect, margin, except, near);
   if (workspace->side)
     drop_backs(surface, workspace->side, near);
-  for (size_t i = 0; i < near->n; i++)
-    near->inverse_h2[i] = near->inverse_h2[i] > 0.0 ? 1.0 / (near->inverse_h2[i] * near->inverse_h2[i]) : 0.0;
   pad(near);
   if (surface->options.type == CONIC_SURFACE_APSS)
     fetch_normals(surface, near);

@@ -196,10 +196,8 @@ static void find_local_h(void *data, size_t i_item) {
   uint32_t slots[64];
   double distances2[64];
   conic_neighbours_around around = {0};
-  size_t n = 0;
   for (size_t slot = i_item * CHUNK; slot < end; slot++) {
-    double bound2 = n ? conic_neighbours_bound2(tree, slots, n, slot - 1, slot) : HUGE_VAL;
-    n = conic_neighbours_of_slot(tree, slot, (size_t)surface->options.n_local, bound2, &around, slots, distances2);
+    size_t n = conic_neighbours_of_slot(tree, slot, (size_t)surface->options.n_local, &around, slots, distances2);
     surface->h[slot] = n ? (float)(sqrt(distances2[n - 1]) / surface->options.neglect) : 0.0f;
   }
 }

@@ -43,7 +43,8 @@ void conic_surface_unit_normal(const conic_splats *points, size_t i, double norm
 /* The samples near a box, in the tree's order, from which the points in it choose their neighbours. */
 typedef struct conic_candidates {
   size_t n, capacity;
-  uint32_t *sources; /* slots; clusters as CONIC_CLUSTER_BIT and the node */
+  uint32_t *sources;  /* slots; clusters as CONIC_CLUSTER_BIT and the node */
+  conic_near samples; /* the same as `select` takes them */
 } conic_candidates;
 
 #define CONIC_CLUSTER_BIT UINT32_C(0x80000000)

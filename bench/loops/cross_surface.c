@@ -8,6 +8,9 @@ typedef struct surface_desk {
   conic_weighing weighing;
   int degree;
   double *moments, *plane, *sphere;
+  uint32_t *selected;
+  double *scales, *chosen; /* chosen: offsets, masses, inverse squares */
+  size_t *n_chosen;
   double (*upper)[CONIC_MAX_COLUMNS], *norms2, *before2;
 } surface_desk;
 
@@ -30,9 +33,18 @@ static surface_desk *open_sums(size_t n, int weight, double neglect, int degree,
   d->upper = cross_room(&d->memory, "upper", CONIC_MAX_COLUMNS * sizeof *d->upper);
   d->norms2 = cross_room(&d->memory, "norms", CONIC_MAX_COLUMNS * sizeof *d->norms2);
   d->before2 = cross_room(&d->memory, "norms before", CONIC_MAX_COLUMNS * sizeof *d->before2);
+  d->chosen = cross_room(&d->memory, "chosen", 5 * (bytes + 64));
+  d->selected = cross_room(&d->memory, "chosen sources", bytes / 2 + 32);
+  d->n_chosen = cross_room(&d->memory, "counts", sizeof *d->n_chosen);
   d->weighing = bent_sheet_weighing((conic_surface_weight)weight, neglect);
   d->degree = degree;
   bent_sheet_fill(&d->near, n, seed);
+  d->near.sources = cross_room(&d->memory, "sources", bytes / 2);
+  d->scales = cross_room(&d->memory, "scales", bytes);
+  for (size_t i = 0; i < d->near.n_padded; i++) {
+    d->near.sources[i] = (uint32_t)(7 * i + 3);
+    d->scales[i] = i < n ? d->near.inverse_h2[i] : NAN;
+  }
   return d;
 }
 
@@ -42,10 +54,34 @@ CROSS_RUN(run_factor, surface_desk,
           tables->surface.factor(&d->near, bent_sheet_frame, 0.15, 0.9, d->degree, d->upper, d->norms2, d->before2))
 CROSS_RUN(run_sphere, surface_desk, tables->surface.sphere(&d->near, &d->weighing, q, d->sphere))
 
+/* Of those that are chosen; what lies behind them is anything. */
+static void select_near(const surface_desk *d, const cross_tables *tables) {
+  conic_near near = {0}, all = d->near;
+  size_t room = d->near.n_padded + 8;
+  double *columns[5];
+  for (size_t i = 0; i < 5; i++)
+    columns[i] = d->chosen + i * room;
+  for (int axis = 0; axis < 3; axis++)
+    near.offset[axis] = columns[axis];
+  near.mass = columns[3];
+  near.inverse_h2 = columns[4];
+  near.sources = d->selected;
+  all.inverse_h2 = d->scales;
+  tables->surface.select(&all, q, 1.0, 0.3, 7 * 5 + 3, &near);
+  *d->n_chosen = near.n;
+  for (size_t i = near.n; i < room; i++) {
+    for (int k = 0; k < 5; k++)
+      columns[k][i] = 0.0;
+    d->selected[i] = 0;
+  }
+}
+CROSS_RUN(run_select, surface_desk, select_near(d, tables))
+
 static void try_slots(cross *c, size_t n, int weight, double neglect, int degree, uint64_t seed) {
   surface_desk *desks[CONIC_N_ISAS];
   char variant[32];
-  const cross_slot slots[] = {{"surface plane", variant, run_plane, "neighbour", (double)n},
+  const cross_slot slots[] = {{"surface select", variant, run_select, "candidate", (double)n},
+                              {"surface plane", variant, run_plane, "neighbour", (double)n},
                               {"surface sphere", variant, run_sphere, "neighbour", (double)n},
                               {"surface moments", variant, run_moments, "neighbour", (double)n},
                               {"surface factor", variant, run_factor, "neighbour", (double)n}};

@@ -66,18 +66,12 @@ static void list_slots(void *data, size_t begin, size_t end) {
   conic_neighbourhood *neighbourhood = l->neighbourhood;
   double distances2[CONIC_MAX_NEIGHBOURS];
   conic_neighbours_around around = {0};
-  size_t previous = end;
   for (size_t slot = begin; slot < end; slot++) {
     if (!(neighbourhood->flags[slot] & l->flags) || neighbourhood->flags[slot] & CONIC_SLOT_LISTED)
       continue;
-    double bound2 = previous == end
-                        ? HUGE_VAL
-                        : conic_neighbours_bound2(&neighbourhood->tree, conic_neighbourhood_of(neighbourhood, previous),
-                                                  neighbourhood->n_neighbours, previous, slot);
-    conic_neighbours_of_slot(&neighbourhood->tree, slot, neighbourhood->n_neighbours, bound2, &around,
+    conic_neighbours_of_slot(&neighbourhood->tree, slot, neighbourhood->n_neighbours, &around,
                              neighbourhood->neighbours + slot * neighbourhood->n_neighbours, distances2);
     neighbourhood->flags[slot] |= CONIC_SLOT_LISTED;
-    previous = slot;
   }
 }
 

@@ -180,7 +180,7 @@ size_t conic_neighbours_nearest(const conic_neighbours *tree, const double query
 /* --- slots of one leaf after the other --- */
 
 /* The reach of the list, as the square of a multiple of the distance to the last neighbour that one slot has. */
-static const double AROUND_REACH2 = 4.0;
+static const double AROUND_REACH2 = 1.7 * 1.7;
 
 /* Lists the leaves within reach of a leaf's box. Rounding is monotonic: the distance of two boxes is not above that of
  * a point in one of them from the other. What does not fit leaves none listed. */
@@ -237,34 +237,52 @@ static void search_around(neighbour_search *s, const conic_neighbours_around *ar
       search_leaf(s, leaves[i]);
 }
 
-size_t conic_neighbours_of_slot(const conic_neighbours *tree, size_t slot, size_t k, double limit2,
-                                conic_neighbours_around *around, uint32_t *slots, double *distances2) {
-  neighbour_search s;
-  const double query[3] = {(double)tree->position[0][slot], (double)tree->position[1][slot],
-                           (double)tree->position[2][slot]};
-  int is_same = slot >= around->begin && slot < around->end;
-  if (is_same && limit2 <= around->reach2) {
-    begin_search(&s, tree, query, (uint32_t)slot, k, limit2);
-    search_around(&s, around);
-    return take_candidates(&s, slots, distances2);
+/* A bound of the squared distance from a slot to its k-th neighbour, by the nearest slot whose k neighbours are known:
+ * the distance to the farthest of these, with the slot itself replaced by that one. */
+static double bound_around(const conic_neighbours *tree, const conic_neighbours_around *around, size_t slot,
+                           const double query[3], size_t k) {
+  double bound2 = 0.0, least2 = HUGE_VAL;
+  size_t best = around->n_known;
+  for (size_t i = 0; i < around->n_known; i++) {
+    double distance2 = conic_neighbours_distance2(tree, around->known[i], query);
+    best = distance2 < least2 || i == 0 ? i : best;
+    least2 = distance2 < least2 ? distance2 : least2;
   }
-  size_t n = conic_neighbours_nearest(tree, query, (uint32_t)slot, k, limit2, slots, distances2);
-  if (!is_same && n == k && k > 0) {
-    size_t i_leaf = (size_t)((uint64_t)slot * (uint64_t)tree->n_leaves / (uint64_t)tree->n_slots);
-    i_leaf += conic_neighbours_leaf_begin(tree, i_leaf + 1) <= slot;
-    list_around(tree, i_leaf, AROUND_REACH2 * distances2[n - 1], around);
-  }
-  return n;
-}
-
-double conic_neighbours_bound2(const conic_neighbours *tree, const uint32_t *nearest, size_t n, size_t other,
-                               size_t slot) {
-  const double query[3] = {(double)tree->position[0][slot], (double)tree->position[1][slot],
-                           (double)tree->position[2][slot]};
-  double bound2 = 0.0;
-  for (size_t i = 0; i < n; i++) {
-    double distance2 = conic_neighbours_distance2(tree, nearest[i] == slot ? other : nearest[i], query);
+  if (best == around->n_known)
+    return HUGE_VAL;
+  for (size_t i = 0; i < k; i++) {
+    size_t other = around->nearest[best][i] == slot ? around->known[best] : around->nearest[best][i];
+    double distance2 = conic_neighbours_distance2(tree, other, query);
     bound2 = distance2 > bound2 ? distance2 : bound2;
   }
   return bound2;
+}
+
+size_t conic_neighbours_of_slot(const conic_neighbours *tree, size_t slot, size_t k, conic_neighbours_around *around,
+                                uint32_t *slots, double *distances2) {
+  const double query[3] = {(double)tree->position[0][slot], (double)tree->position[1][slot],
+                           (double)tree->position[2][slot]};
+  double limit2 = bound_around(tree, around, slot, query, k);
+  int is_same = slot >= around->begin && slot < around->end;
+  size_t n;
+  if (is_same && limit2 <= around->reach2) {
+    neighbour_search s;
+    begin_search(&s, tree, query, (uint32_t)slot, k, limit2);
+    search_around(&s, around);
+    n = take_candidates(&s, slots, distances2);
+  } else
+    n = conic_neighbours_nearest(tree, query, (uint32_t)slot, k, limit2, slots, distances2);
+  if (n < k || k == 0)
+    return n;
+  if (!is_same) {
+    size_t i_leaf = (size_t)((uint64_t)slot * (uint64_t)tree->n_leaves / (uint64_t)tree->n_slots);
+    i_leaf += conic_neighbours_leaf_begin(tree, i_leaf + 1) <= slot;
+    list_around(tree, i_leaf, AROUND_REACH2 * distances2[n - 1], around);
+    around->n_known = 0;
+  }
+  if (around->n_known < CONIC_LEAF_SLOTS) {
+    around->known[around->n_known] = (uint32_t)slot;
+    memcpy(around->nearest[around->n_known++], slots, k * sizeof *slots);
+  }
+  return n;
 }

@@ -37,20 +37,21 @@ enum { CONIC_MOST_NEAREST = 64 };
 size_t conic_neighbours_nearest(const conic_neighbours *tree, const double query[3], uint32_t except, size_t k,
                                 double limit2, uint32_t *slots, double *distances2);
 
-/* The leaves around one leaf, found once for all of its slots. Zero is none. */
+/* The leaves around one leaf, found once for all of its slots, and what is known of these. Zero is none. */
 enum { CONIC_MOST_AROUND = 64 };
 typedef struct conic_neighbours_around {
   size_t begin, end; /* the leaf's slots */
   double reach2;     /* leaves no farther from the leaf's box than that, squared, are listed */
-  size_t n;
+  size_t n, n_known;
   uint32_t leaves[CONIC_MOST_AROUND];
   float boxes[CONIC_MOST_AROUND][6]; /* of each */
+  uint32_t known[CONIC_LEAF_SLOTS], nearest[CONIC_LEAF_SLOTS][CONIC_MOST_NEAREST];
 } conic_neighbours_around;
 
-/* The nearest of a slot, itself excepted, as conic_neighbours_nearest finds them. That is quicker where slots follow
- * each other, with the same `around`, and a `limit2` from the last one's nearest. */
-size_t conic_neighbours_of_slot(const conic_neighbours *tree, size_t slot, size_t k, double limit2,
-                                conic_neighbours_around *around, uint32_t *slots, double *distances2);
+/* The k nearest of a slot, itself excepted, as conic_neighbours_nearest finds them. That is quicker where slots follow
+ * each other, with the same `around`, which is for one k. */
+size_t conic_neighbours_of_slot(const conic_neighbours *tree, size_t slot, size_t k, conic_neighbours_around *around,
+                                uint32_t *slots, double *distances2);
 
 /* The squared distance from a query to a slot, with the bits that conic_neighbours_nearest gives. */
 static inline double conic_neighbours_distance2(const conic_neighbours *tree, size_t slot, const double query[3]) {
@@ -59,11 +60,6 @@ static inline double conic_neighbours_distance2(const conic_neighbours *tree, si
   double z = (double)tree->position[2][slot] - query[2];
   return x * x + y * y + z * z;
 }
-
-/* A bound of the squared distance from `slot` to its n-th neighbour, from the n nearest of a nearby slot `other`: the
- * distance to the farthest of these, with `slot` replaced by `other`. */
-double conic_neighbours_bound2(const conic_neighbours *tree, const uint32_t *nearest, size_t n, size_t other,
-                               size_t slot);
 
 /* The first slot of leaf `i_leaf`; the leaf ends where the next one begins. */
 static inline size_t conic_neighbours_leaf_begin(const conic_neighbours *tree, size_t i_leaf) {

@@ -113,15 +113,39 @@ CONIC_INLINE wide wide_absolute(wide value) {
   return (wide)((wide_mask)value & INT64_MAX);
 }
 
-CONIC_INLINE int wide_any(wide_mask mask) {
+/* Bit l for lane l. */
+CONIC_INLINE unsigned wide_bits(wide_mask mask) {
 #if defined(__AVX512F__)
-  return _mm512_movepi64_mask((__m512i)mask) != 0;
+  return _mm512_movepi64_mask((__m512i)mask);
 #elif defined(__AVX2__)
-  return _mm256_movemask_pd((__m256d)mask) != 0;
+  return (unsigned)_mm256_movemask_pd((__m256d)mask);
 #elif defined(__SSE2__)
-  return _mm_movemask_pd((__m128d)mask) != 0;
+  return (unsigned)_mm_movemask_pd((__m128d)mask);
 #else
-  return (mask[0] | mask[1]) != 0;
+  return (unsigned)(mask[0] & 1) | (unsigned)(mask[1] & 2);
+#endif
+}
+
+CONIC_INLINE int wide_any(wide_mask mask) {
+  return wide_bits(mask) != 0;
+}
+
+/* Writes the values of the lanes with a bit one after the other, then anything up to CONIC_WIDE_LANES. */
+CONIC_INLINE void wide_append(double *to, unsigned bits, wide value) {
+#if defined(__AVX512F__)
+  _mm512_storeu_pd(to, _mm512_maskz_compress_pd((__mmask8)bits, (__m512d)value));
+#else
+  for (int lane = 0; lane < CONIC_WIDE_LANES; to += bits >> lane++ & 1)
+    *to = value[lane];
+#endif
+}
+
+CONIC_INLINE void wide_append_ints(uint32_t *to, unsigned bits, wide_ints value) {
+#if defined(__AVX512F__)
+  _mm256_storeu_si256((__m256i *)(void *)to, _mm256_maskz_compress_epi32((__mmask8)bits, (__m256i)value));
+#else
+  for (int lane = 0; lane < CONIC_WIDE_LANES; to += bits >> lane++ & 1)
+    *to = (uint32_t)value[lane];
 #endif
 }
 

@@ -38,6 +38,11 @@ enum { CONIC_N_PLANE_SUMS = 12 };
 enum { CONIC_N_SPHERE_SUMS = 10 };
 
 typedef struct conic_surface_loops {
+  /* Makes those of `all`, whose offsets are places and whose inverse_h2 are scales, the neighbours of r that are nearer
+   * to it than `neglect` scales of theirs and the margin, without the source `except`. A scale that is NaN is near
+   * nothing; one of 0 has the inverse 0. */
+  void (*select)(const conic_near *all, const double r[3], double neglect, double margin, uint32_t except,
+                 conic_near *near);
   /* Fills in the weights about q (relative to r), and sums of w, w·d (3) and w·d·dᵀ (xx xy xz yy yz zz), d being
    * relative to q, and the number of neighbours with weight. */
   void (*moments)(conic_near *near, const conic_weighing *weighing, const double q[3], double sums[CONIC_N_MOMENTS]);

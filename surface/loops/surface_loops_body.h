@@ -80,6 +80,27 @@ CONIC_INLINE void add_up(partial_sums *partials, int n, double *sums) {
     sums[k] = total(partials[k]);
 }
 
+static void select(const conic_near *all, const double r[3], double neglect, double margin, uint32_t except,
+                   conic_near *near) {
+  size_t n = 0;
+  for (size_t i = 0; i < all->n_padded; i += CONIC_WIDE_LANES) {
+    wide x = wide_load(all->offset[0] + i) - r[0], y = wide_load(all->offset[1] + i) - r[1];
+    wide z = wide_load(all->offset[2] + i) - r[2], h = wide_load(all->inverse_h2 + i), reach = neglect * h + margin;
+    wide_ints sources;
+    memcpy(&sources, all->sources + i, sizeof sources);
+    wide_mask is_other = __builtin_convertvector(sources != (int32_t)except, wide_mask);
+    unsigned bits = wide_bits(((x * x + y * y) + z * z < reach * reach) & is_other);
+    wide_append(near->offset[0] + n, bits, x);
+    wide_append(near->offset[1] + n, bits, y);
+    wide_append(near->offset[2] + n, bits, z);
+    wide_append(near->mass + n, bits, wide_load(all->mass + i));
+    wide_append(near->inverse_h2 + n, bits, wide_keep(h > 0.0, 1.0 / (h * h)));
+    wide_append_ints(near->sources + n, bits, sources);
+    n += (size_t)__builtin_popcount(bits);
+  }
+  near->n = n;
+}
+
 CONIC_INLINE void moments_part(conic_near *near, const conic_weighing *weighing, const double q[3],
                                partial_sums *partials, size_t lane, conic_surface_weight weight) {
   wide w_sum = {0}, x_sum = {0}, y_sum = {0}, z_sum = {0}, count = {0};
@@ -259,5 +280,5 @@ static void sphere(conic_near *near, const conic_weighing *weighing, const doubl
 }
 
 CONIC_FILL_LOOPS(conic_surface_loops) {
-  *loops = (conic_surface_loops){moments, plane, factor, sphere};
+  *loops = (conic_surface_loops){select, moments, plane, factor, sphere};
 }

@@ -12,6 +12,23 @@ static void totals(partial *partials, int n, double *sums) {
     sums[i] = total(partials[i]);
 }
 
+static void select(const conic_near *all, const double r[3], double neglect, double margin, uint32_t except,
+                   conic_near *near) {
+  size_t n = 0;
+  for (size_t i = 0; i < all->n; i++) {
+    double x = all->offset[0][i] - r[0], y = all->offset[1][i] - r[1], z = all->offset[2][i] - r[2];
+    double h = all->inverse_h2[i], reach = neglect * h + margin;
+    near->offset[0][n] = x;
+    near->offset[1][n] = y;
+    near->offset[2][n] = z;
+    near->mass[n] = all->mass[i];
+    near->inverse_h2[n] = h > 0.0 ? 1.0 / (h * h) : 0.0;
+    near->sources[n] = all->sources[i];
+    n += (x * x + y * y) + z * z < reach * reach && all->sources[i] != except;
+  }
+  near->n = n;
+}
+
 static void moments(conic_near *near, const conic_weighing *weighing, const double q[3], double sums[CONIC_N_MOMENTS]) {
   partial partials[CONIC_N_MOMENTS] = {{0}};
   for (size_t i = 0; i < near->n_padded; i++) {
@@ -124,5 +141,5 @@ static void sphere(conic_near *near, const conic_weighing *weighing, const doubl
 CONIC_DEFINE_LOOPS(conic_surface_loops)
 
 void conic_surface_loops_scalar(conic_surface_loops *loops) {
-  *loops = (conic_surface_loops){moments, plane, factor, sphere};
+  *loops = (conic_surface_loops){select, moments, plane, factor, sphere};
 }
