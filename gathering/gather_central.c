@@ -285,8 +285,9 @@ conic_status conic_gather_central(const conic_gathering *g) {
   conic_image fine = {0};
   n_rows = n_rows < 1 ? 1 : n_rows > height ? height : n_rows;
   conic_camera_rays_init(&o->camera, &b.rays);
-  if (samples > 1 && conic_image_planes(g->image) & ~(CONIC_DRAWN_PLANES | 1u << CONIC_PLANE_CLUSTER))
-    return conic_fail(g->context, CONIC_ERROR_ARGUMENT, "gather: of several samples, only drawn planes are made one");
+  if (samples > 1 && conic_image_planes(g->image) & ~conic_samples_planes())
+    return conic_fail(g->context, CONIC_ERROR_ARGUMENT,
+                      "gather: of several samples, some planes cannot be made one; draw one sample a pixel");
   conic_status status = plan_views(&b);
   if (status == CONIC_OK)
     status = allocate_band(&b, n_rows, &fine);

@@ -30,7 +30,7 @@ static const conic_shot_stage *stages_chain(conic_shot_work *work, conic_shot_st
     conic_status (*draw)(const conic_shot_stage *, const conic_look *, conic_image *, conic_render_statistics *);
   } above[] = {{is_lit_below, conic_stage_lit},
                {has_roles && (is_lit_below || plan->lit == CONIC_LIT_NOT), conic_stage_roles},
-               {plan->is_composited, conic_stage_composited},
+               {plan->is_apart, conic_stage_composited},
                {plan->is_gathered, conic_stage_gathered},
                {plan->lit != CONIC_LIT_NOT && !is_lit_below, conic_stage_lit},
                {has_roles && plan->lit != CONIC_LIT_NOT && !is_lit_below, conic_stage_roles},
@@ -61,7 +61,6 @@ conic_status conic_shot_work_begin(conic_source *source, conic_renderer *rendere
   memset(work, 0, sizeof *work);
   work->context = source->context;
   work->source = source;
-  work->surfaces = conic_source_surfaces(source) ? conic_source_surfaces(source) : source;
   work->renderer = renderer;
   work->shot = shot;
   work->noise = -1.0;
@@ -69,18 +68,32 @@ conic_status conic_shot_work_begin(conic_source *source, conic_renderer *rendere
   work->executor = &work->alone.executor;
   conic_status status = conic_shot_plan_make(source, renderer, shot, &work->plan);
   work->planes = work->plan.planes;
+  work->surfaces = work->plan.is_apart ? conic_source_surfaces(source) : source;
   return status == CONIC_OK ? conic_source_composite_by(source, &shot->gaussians) : status;
 }
 
 /* The plane doubt is not the renderer's, but the oracle's about what it may have drawn. */
 static conic_status find_doubts(const conic_shot_work *work, const conic_camera *camera, conic_image *image) {
+  const conic_shot *shot = work->shot;
   conic_gaussian_judging judging;
+  conic_image drawn = {0};
+  const conic_gaussian_surfaces surfaces = {.image = &drawn};
   if (!image->planes[CONIC_PLANE_DOUBT])
     return CONIC_OK;
   conic_gaussian_judging_init(&judging);
-  judging.samples = work->shot->view.samples;
-  return conic_gaussian_find_doubts(work->context, conic_source_gaussians(work->source), camera, &work->shot->gaussians,
-                                    &judging, image);
+  judging.samples = shot->view.samples;
+  conic_status status = conic_shot_move(shot, work->source, 0.5);
+  if (status == CONIC_OK && work->plan.is_composited) {
+    judging.surfaces = &surfaces;
+    status = conic_source_draw_surfaces(work->source, work->renderer, camera, &shot->render, &shot->view,
+                                        conic_image_planes(image), &drawn);
+  }
+  if (status == CONIC_OK)
+    status = conic_gaussian_find_doubts(work->context, conic_source_gaussians(work->source), camera, &shot->gaussians,
+                                        &judging, image);
+  conic_shot_rest(shot, work->source);
+  conic_image_release(work->context, &drawn);
+  return status;
 }
 
 static void tell_outcome(const conic_shot_work *work, const conic_render_statistics *statistics,

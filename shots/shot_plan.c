@@ -68,6 +68,9 @@ static const char *find_fault(const conic_source *source, const conic_shot *shot
     return "catchers and holdouts are surfaces";
   if (shot->planes & CONIC_GAUSSIAN_PLANES && !(abilities & CONIC_SOURCE_COMPOSITES))
     return "the planes T, medianZ, inverseZ, last and doubt are of Gaussians that are composited";
+  if (shot->planes & 1u << CONIC_PLANE_DOUBT && conic_source_surfaces(source) &&
+      conic_shot_is_gathered(shot, abilities, &shot->camera))
+    return "the plane doubt, with surfaces among Gaussians, is of a perspective camera without a lens that distorts";
   if (shot->planes & 1u << CONIC_PLANE_CLUSTER && !(abilities & CONIC_SOURCE_CLUSTERS))
     return "the plane cluster is of hybrids";
   if (shot->planes & MOTION && (shot->camera.lens || (shot->camera.kind != CONIC_CAMERA_PERSPECTIVE &&
@@ -86,8 +89,9 @@ conic_status conic_shot_plan_make(const conic_source *source, const conic_render
   plan->is_gathered = conic_shot_is_gathered(shot, abilities, &shot->camera);
   plan->is_composited = conic_source_surfaces(source) != NULL;
   plan->lit = lit_how(shot, plan->is_gathered, plan->is_composited);
+  plan->is_apart = plan->is_composited && (plan->lit != CONIC_LIT_NOT || shot->catchers | shot->holdouts);
   plan->planes = conic_shot_needs(shot, shot->planes);
   plan->has_windows = conic_source_has_windows(source, renderer, shot->view.transparency != CONIC_TRANSPARENCY_NONE) &&
-                      !(shot->catchers | shot->holdouts);
+                      !(shot->catchers | shot->holdouts) && !plan->is_apart;
   return CONIC_OK;
 }

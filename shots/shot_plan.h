@@ -18,6 +18,7 @@ typedef struct conic_shot_plan {
   unsigned planes;   /* what has to be drawn: the shot's, and what these are made of */
   int has_windows;   /* it can be drawn piece by piece, to the same bits: in strips, or by several processes */
   int is_composited; /* surfaces are among Gaussians */
+  int is_apart;      /* and a stage has to see them before they are */
 } conic_shot_plan;
 
 /* Errors: ARGUMENT (a member is out of its range; what cannot be together). */

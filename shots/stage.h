@@ -37,8 +37,8 @@ typedef struct conic_sums_keeper {
 typedef struct conic_shot_work {
   conic_context *context;
   conic_source *source;
-  conic_source *surfaces; /* what the stages below the composited one draw: the source, unless it has surfaces among
-                             its Gaussians */
+  conic_source *surfaces; /* what the leaf draws: the source, or, below a composited stage, the surfaces among its
+                             Gaussians */
   conic_renderer *renderer;
   const conic_shot *shot;
   conic_shot_plan plan;

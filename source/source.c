@@ -4,6 +4,7 @@
 #include "core/base/vectors.h"
 #include "source/carried.h"
 #include "source/reach.h"
+#include "source/surfaces_among.h"
 
 /* Every kind, in the order in which they are asked; the last takes all remaining inputs. */
 static const conic_source_kind *const kinds[] = {
@@ -211,7 +212,8 @@ const conic_source_choice *conic_source_chosen(const conic_source *source) {
 /* Transparency needs surfaces that keep their opacities. */
 static conic_status check_opacities(conic_source *source) {
   const unsigned abilities = source->scale.abilities;
-  const char *fault = abilities & CONIC_SOURCE_COMPOSITES ? "a Gaussian scene is composited by its opacities already"
+  const char *fault = (abilities & CONIC_SOURCE_COMPOSITES && !conic_source_surfaces(source))
+                          ? "a Gaussian scene is composited by its opacities already"
                       : abilities & CONIC_SOURCE_CLUSTERS ? "a hybrid keeps no opacities; draw what it was made of"
                                                           : NULL;
   return fault ? conic_fail(source->context, CONIC_ERROR_UNSUPPORTED, "%s: no transparency: %s", source->name, fault)

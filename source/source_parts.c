@@ -5,9 +5,10 @@
 
 int conic_source_has_windows(const conic_source *source, const conic_renderer *renderer, int is_transparent) {
   const conic_source_windowing *windowing = source->kind->windowing;
+  const conic_source *surfaces = conic_source_surfaces(source);
   int is_carried = source->is_moved && !source->kind->move;
-  return windowing && !conic_source_surfaces(source) && (!is_transparent || windowing->has_transparency) &&
-         !is_carried && conic_renderer_has_parts(renderer);
+  return windowing && (!surfaces || conic_source_has_windows(surfaces, renderer, is_transparent)) &&
+         (!is_transparent || windowing->has_transparency) && !is_carried && conic_renderer_has_parts(renderer);
 }
 
 conic_status conic_source_windows_begin(conic_source *source, conic_renderer *renderer, const conic_camera *camera,

@@ -17,6 +17,12 @@ typedef struct conic_surfaces_look {
 conic_surfaces_look conic_surfaces_look_of(const conic_camera *camera, const conic_render_options *render,
                                            const conic_source_view *view, unsigned planes);
 
+/* Draws the surfaces of a source that has some by themselves, with the planes that a picture with the given ones needs
+ * of them. The caller releases *surfaces, after a failure, too. Errors: as conic_source_draw. */
+conic_status conic_source_draw_surfaces(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
+                                        const conic_render_options *render, const conic_source_view *view,
+                                        unsigned planes, conic_image *surfaces);
+
 /* Draws the surfaces, without a background, one sample a pixel, into all planes that the image has: those that it needs
  * by itself are bits of `planes`. */
 typedef struct conic_surfaces_drawer {

@@ -130,7 +130,7 @@ int cli_explain_composited(cli_session *session, cli_render_job *scene, int x, i
     status = conic_source_draw(scene->source, scene->renderer, &camera, &scene->shot.render, &scene->shot.view, &image,
                                &scene->statistics);
   if (status == CONIC_OK)
-    status = cli_draw_surfaces(session, scene, &camera, CLI_COMPOSITED_PLANES, &drawn);
+    status = cli_draw_surfaces(scene, &camera, CLI_COMPOSITED_PLANES, &drawn);
   if (status == CONIC_OK)
     status = conic_gaussian_explain(session->context, conic_source_gaussians(scene->source), &camera, &options, NULL,
                                     drawn.given, x, y, &listing);

@@ -142,7 +142,7 @@ int cli_verify_composited(cli_session *session, cli_render_job *scene, size_t n_
   if (status == CONIC_OK)
     status = cli_reference_check_size(image_path, image, &camera);
   if (status == CONIC_OK)
-    status = cli_draw_surfaces(session, scene, &camera, conic_image_planes(image), &drawn);
+    status = cli_draw_surfaces(scene, &camera, conic_image_planes(image), &drawn);
   double start = cli_seconds();
   if (status == CONIC_OK) {
     r.judging.surfaces = drawn.given;

@@ -31,7 +31,7 @@ conic_status cli_judge_gaussians(cli_session *session, cli_judge_job *job) {
   judging.ranges = job->ranges;
   judging.faults = job->wrong_values;
   conic_status status =
-      cli_draw_surfaces(session, &job->scene, &job->camera, conic_image_planes(&job->picture.image), &job->drawn);
+      cli_draw_surfaces(&job->scene, &job->camera, conic_image_planes(&job->picture.image), &job->drawn);
   judging.surfaces = job->drawn.given;
   if (status == CONIC_OK)
     status = conic_gaussian_judge(session->context, conic_source_gaussians(job->scene.source), &job->camera, &options,

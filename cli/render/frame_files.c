@@ -165,7 +165,7 @@ static conic_status write_deep_gaussians(cli_session *session, const cli_render_
                                          const conic_camera *camera, const conic_image *image) {
   cli_surfaces_drawn drawn;
   conic_gaussian_options options = job->shot.gaussians;
-  conic_status status = cli_draw_surfaces(session, job, camera, 1u << CONIC_PLANE_ID, &drawn);
+  conic_status status = cli_draw_surfaces(job, camera, 1u << CONIC_PLANE_ID, &drawn);
   options.isa = job->shot.render.isa;
   if (status == CONIC_OK)
     status = conic_gaussians_write_deep(session->context, conic_source_gaussians(job->source), camera, &options,

@@ -151,7 +151,7 @@ static conic_status rank_composited(cli_session *session, const conic_camera *ca
   float *shares = conic_memory_allocate(session->context, pass->n * n_pixels, sizeof *shares);
   conic_status status = shares ? CONIC_OK : CONIC_ERROR_MEMORY;
   options.isa = job->shot.render.isa;
-  conic_status drawing = cli_draw_surfaces(session, job, camera, 1u << CONIC_PLANE_ID, &drawn);
+  conic_status drawing = cli_draw_surfaces(job, camera, 1u << CONIC_PLANE_ID, &drawn);
   status = status == CONIC_OK ? drawing : status;
   if (status == CONIC_OK)
     status = conic_gaussians_find_shares(session->context, conic_source_gaussians(job->source), &fine, &options,

@@ -48,7 +48,8 @@ int cli_units_choose(const cli_session *session, cli_render_job *job) {
 
 void cli_units_settle(cli_render_job *job) {
   int has_windows = conic_source_has_windows(job->source, job->renderer, job->is_transparent) &&
-                    !(job->shot.catchers | job->shot.holdouts);
+                    !(job->shot.catchers | job->shot.holdouts) &&
+                    !(job->abilities & CONIC_SOURCE_MIXES && conic_shot_is_lit(&job->shot));
   if (job->units == CONIC_UNITS_WINDOWS && !has_windows)
     set_units(job, CONIC_UNITS_NONE, NULL);
 }

@@ -185,10 +185,6 @@ int cli_scene_check(const cli_session *session, cli_scene_words *words, cli_rend
       !takes_both(session->command))
     answer = cli_usage("%s: it takes Gaussian scenes, or surfaces; conic render, verify, judge and explain take both",
                        session->command);
-  if (answer == CLI_DONE && job->abilities & CONIC_SOURCE_MIXES && job->is_aov_given &&
-      job->shot.planes & (1u << CONIC_PLANE_AO | 1u << CONIC_PLANE_SHADOW | 1u << CONIC_PLANE_DOUBT))
-    answer = cli_usage("%s: --aov ao and shadow are of surfaces without Gaussians, doubt of Gaussians without surfaces",
-                       session->command);
   job->shot.view.is_alone &=
       job->shot.view.error_px > 0.0 && !job->opening.cache && !(job->effects.asked & CLI_DRAWS_MORE);
   if (answer == CLI_DONE && job->abilities & CONIC_SOURCE_CLUSTERS && job->n_inputs != 1)

@@ -12,5 +12,5 @@ typedef struct cli_surfaces_drawn {
 
 /* Draws them, a pixel each sample, with rgba, Z and, where `planes` has these, or what is made of them, N and id.
  * *drawn stays where it is until its image is released, after a failure, too. */
-conic_status cli_draw_surfaces(cli_session *session, const cli_render_job *scene, const conic_camera *camera,
-                               unsigned planes, cli_surfaces_drawn *drawn);
+conic_status cli_draw_surfaces(const cli_render_job *scene, const conic_camera *camera, unsigned planes,
+                               cli_surfaces_drawn *drawn);

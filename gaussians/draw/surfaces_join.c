@@ -4,7 +4,7 @@
 #include "core/base/color.h"
 
 typedef struct surface_joining {
-  const conic_image *surfaces;
+  conic_image *surfaces;
   const float *background;
   int is_linear;
   uint32_t first_id;
@@ -52,6 +52,21 @@ static void join_others(const surface_joining *j, size_t i, float T, float w) {
     p->id[i] = j->first_id + ids[i];
 }
 
+/* Planes of surfaces alone: Gaussians have no albedo and no weight, and no light is hidden from them. */
+static void join_own(const surface_joining *j, size_t i, float T) {
+  static const struct {
+    conic_plane plane;
+    float of_gaussians;
+  } all[] = {
+      {CONIC_PLANE_ALBEDO, 0.0f}, {CONIC_PLANE_WEIGHT, 0.0f}, {CONIC_PLANE_AO, 1.0f}, {CONIC_PLANE_SHADOW, 1.0f}};
+  for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
+    float *plane = j->surfaces->planes[all[k].plane];
+    const size_t n = (size_t)conic_plane_describe(all[k].plane)->n_channels;
+    for (size_t at = n * i; plane && at < n * (i + 1); at++)
+      plane[at] = (1.0f - T) * all[k].of_gaussians + T * plane[at];
+  }
+}
+
 static void join_row(void *data, size_t row) {
   const surface_joining *j = data;
   const size_t width = (size_t)j->planes->width;
@@ -59,6 +74,7 @@ static void join_row(void *data, size_t row) {
   for (size_t i = row * width; i < (row + 1) * width; i++) {
     const float T = j->planes->transparency[i], w = T * rgba[4 * i + 3];
     join_colors(j, i, T, &rgba[4 * i]);
+    join_own(j, i, T);
     if (!(w > 0.0f))
       continue;
     join_depths(j, i, T, w);
@@ -66,7 +82,7 @@ static void join_row(void *data, size_t row) {
   }
 }
 
-void conic_surfaces_join(conic_context *context, const conic_image *surfaces, const float background[3], int is_linear,
+void conic_surfaces_join(conic_context *context, conic_image *surfaces, const float background[3], int is_linear,
                          uint32_t first_id, conic_gaussian_planes *planes) {
   surface_joining j = {surfaces, background, is_linear, first_id, planes};
   conic_parallel_for(context, (size_t)planes->height, join_row, &j);

@@ -89,6 +89,13 @@ static void take_central(const reduction *r, conic_plane plane, size_t corner, s
          sizeof *fine);
 }
 
+static const conic_plane means[] = {CONIC_PLANE_WEIGHT, CONIC_PLANE_TRANSPARENCY, CONIC_PLANE_INVERSE_Z, CONIC_PLANE_AO,
+                                    CONIC_PLANE_SHADOW},
+                         centrals[] = {CONIC_PLANE_Z, CONIC_PLANE_ID, CONIC_PLANE_CLUSTER, CONIC_PLANE_MEDIAN_Z,
+                                       CONIC_PLANE_LAST};
+
+enum { N_MEANS = sizeof means / sizeof *means, N_CENTRALS = sizeof centrals / sizeof *centrals };
+
 static void reduce_row(void *data, size_t i_row) {
   const reduction *r = data;
   void *const *planes = r->image->planes;
@@ -99,21 +106,28 @@ static void reduce_row(void *data, size_t i_row) {
     take_means(r, CONIC_PLANE_RGBA, 4, first_corner, first);
   if (planes[CONIC_PLANE_ALBEDO])
     take_means(r, CONIC_PLANE_ALBEDO, 3, first_corner, first);
-  if (planes[CONIC_PLANE_WEIGHT])
-    take_means(r, CONIC_PLANE_WEIGHT, 1, first_corner, first);
+  for (int i = 0; i < N_MEANS; i++)
+    if (planes[means[i]] && r->fine->planes[means[i]])
+      take_means(r, means[i], 1, first_corner, first);
   for (size_t x = 0; x < width; x++) {
     size_t corner = first_corner + x * r->samples, at = first + x;
     if (planes[CONIC_PLANE_NORMAL])
       take_normal(r, corner, at);
     if (planes[CONIC_PLANE_COUNT])
       take_greatest_count(r, corner, at);
-    if (planes[CONIC_PLANE_Z])
-      take_central(r, CONIC_PLANE_Z, corner, at);
-    if (planes[CONIC_PLANE_ID])
-      take_central(r, CONIC_PLANE_ID, corner, at);
-    if (planes[CONIC_PLANE_CLUSTER] && r->fine->planes[CONIC_PLANE_CLUSTER])
-      take_central(r, CONIC_PLANE_CLUSTER, corner, at);
+    for (int i = 0; i < N_CENTRALS; i++)
+      if (planes[centrals[i]] && r->fine->planes[centrals[i]])
+        take_central(r, centrals[i], corner, at);
   }
+}
+
+unsigned conic_samples_planes(void) {
+  unsigned planes = CONIC_DRAWN_PLANES;
+  for (int i = 0; i < N_MEANS; i++)
+    planes |= 1u << means[i];
+  for (int i = 0; i < N_CENTRALS; i++)
+    planes |= 1u << centrals[i];
+  return planes;
 }
 
 conic_camera conic_samples_camera(const conic_camera *camera, int samples, int first_row, int n_rows) {

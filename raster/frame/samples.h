@@ -19,7 +19,10 @@ conic_status conic_render_bands(conic_context *context, conic_renderer *renderer
 int conic_samples_band_rows(const conic_camera *camera, int samples);
 conic_camera conic_samples_camera(const conic_camera *camera, int samples, int first_row, int n_rows);
 
-/* Makes the image's pixels, from those on, of the samples that `fine` has. */
+/* The planes of which samples can become a pixel, as bits. */
+unsigned conic_samples_planes(void);
+
+/* Makes the image's pixels, from those on, of the samples that `fine` has: of those planes. */
 void conic_samples_reduce(conic_context *context, const conic_image *fine, int samples, int first_column, int first_row,
                           conic_image *image);
 

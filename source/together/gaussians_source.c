@@ -98,11 +98,16 @@ void conic_gaussians_source_close(conic_source *source) {
 /* A window of the picture with several samples a pixel. */
 typedef struct fine_picture {
   conic_gaussian_planes planes;
+  conic_image *surfaces;  /* null: there are none */
   int samples, is_opaque; /* is_opaque: there is a background */
 } fine_picture;
 
 static int wants(const conic_image *image, conic_plane plane) {
   return image->planes[plane] != NULL;
+}
+
+static int is_of_surfaces(const fine_picture *fine, int plane) {
+  return fine->surfaces && CONIC_SURFACES_PLANES >> plane & 1;
 }
 
 static conic_status allocate_planes(conic_context *context, const conic_image *image, fine_picture *fine) {
@@ -197,6 +202,11 @@ static int reduce_pixel(const fine_picture *fine, size_t x, size_t y, size_t pix
     mean_normal(fine, x, y, (float *)image->planes[CONIC_PLANE_NORMAL] + 3 * pixel);
   if (p->count)
     ((uint32_t *)image->planes[CONIC_PLANE_COUNT])[pixel] = greatest_count(fine, x, y);
+  for (int plane = 0; plane < CONIC_N_PLANES; plane++) {
+    const size_t n = (size_t)conic_plane_describe((conic_plane)plane)->n_channels;
+    for (size_t c = 0; c < n && image->planes[plane] && is_of_surfaces(fine, plane); c++)
+      ((float *)image->planes[plane])[n * pixel + c] = (float)mean_of(fine, fine->surfaces->planes[plane], n, c, x, y);
+  }
   return T < 1.0f;
 }
 
@@ -209,12 +219,12 @@ static uint64_t reduce_samples(const fine_picture *fine, const conic_image *imag
 }
 
 /* Clears the planes that compositing does not fill. */
-static void clear_other_planes(const conic_image *image) {
+static void clear_other_planes(const fine_picture *fine, const conic_image *image) {
   const unsigned made = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_TRANSPARENCY | 1u << CONIC_PLANE_Z |
                         1u << CONIC_PLANE_MEDIAN_Z | 1u << CONIC_PLANE_INVERSE_Z | 1u << CONIC_PLANE_ID |
                         1u << CONIC_PLANE_LAST | 1u << CONIC_PLANE_NORMAL | 1u << CONIC_PLANE_COUNT;
   for (int i = 0; i < CONIC_N_PLANES; i++)
-    if (image->planes[i] && !(made >> i & 1))
+    if (image->planes[i] && !(made >> i & 1) && !is_of_surfaces(fine, i))
       memset(image->planes[i], 0,
              conic_image_pixels(image) * (size_t)conic_plane_describe((conic_plane)i)->n_channels * 4);
 }
@@ -238,13 +248,50 @@ static void tell_drawing(const gaussians_source *g, uint64_t n_pairs, uint64_t n
   statistics->ms.frame = statistics->ms.setup + statistics->ms.bin + statistics->ms.accumulate;
 }
 
+/* --- surfaces among them --- */
+
+conic_surfaces_look conic_surfaces_look_of(const conic_camera *camera, const conic_render_options *render,
+                                           const conic_source_view *view, unsigned planes) {
+  const unsigned ids = 1u << CONIC_PLANE_ID | 1u << CONIC_PLANE_LAST;
+  conic_surfaces_look look = {conic_samples_camera(camera, view->samples, 0, camera->height), *render, *view,
+                              1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z |
+                                  (planes & (CONIC_SURFACES_PLANES | 1u << CONIC_PLANE_NORMAL)) |
+                                  (planes & ids ? 1u << CONIC_PLANE_ID : 0)};
+  look.render.has_background = 0;
+  look.view.samples = 1;
+  return look;
+}
+
+/* The statistics of a picture, or of a window, of both; of further windows, what all have is known. */
+static void add_surfaces(const conic_render_statistics *of_surfaces, int is_further,
+                         conic_render_statistics *statistics) {
+  const uint64_t n_covered = statistics->pixels_covered;
+  if (is_further)
+    statistics->splats_in = statistics->splats_drawn = statistics->splats_culled = statistics->splats_skipped = 0;
+  conic_statistics_add(of_surfaces, statistics);
+  statistics->pixels_covered = n_covered;
+}
+
 /* --- windows --- */
+
+typedef struct own_windows {
+  conic_gaussian_picture *picture;
+  conic_source_windows surfaces; /* of the fine picture; zero where there are none, or somebody else draws them */
+} own_windows;
+
+/* A window of the fine picture. */
+static conic_window fine_window_of(const conic_source_windows *w, const conic_window *window) {
+  const int n = w->samples;
+  return (conic_window){n * window->x_begin, n * window->x_end, n * window->y_begin, n * window->y_end};
+}
 
 static conic_status begin_gaussian_windows(conic_source_windows *w) {
   gaussians_source *g = (gaussians_source *)w->source;
   conic_context *context = w->source->context;
   const conic_camera fine = conic_samples_camera(&w->camera, w->samples, 0, w->camera.height);
-  conic_gaussian_picture *picture = NULL;
+  own_windows *own = w->own = conic_memory_allocate_zeroed(context, 1, sizeof *own);
+  if (!own)
+    return CONIC_ERROR_MEMORY;
   if ((long)w->camera.width * w->samples > 65535 || (long)w->camera.height * w->samples > 65535)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: so many samples make more than 65535 a side",
                       w->source->name);
@@ -257,39 +304,57 @@ static conic_status begin_gaussian_windows(conic_source_windows *w) {
     g->options.background[c] = w->render.has_background && !g->surfaces ? w->render.background[c] : 0.0f;
   if (status == CONIC_OK)
     status = conic_gaussian_picture_begin(context, &g->gaussians, &fine, &g->options,
-                                          w->planes >> CONIC_PLANE_NORMAL & 1, &picture);
-  w->own = picture;
+                                          w->planes >> CONIC_PLANE_NORMAL & 1, &own->picture);
+  return status;
+}
+
+static conic_status begin_windows_of_both(conic_source_windows *w) {
+  conic_status status = begin_gaussian_windows(w);
+  conic_source *surfaces = ((const gaussians_source *)w->source)->surfaces;
+  if (!surfaces || status != CONIC_OK)
+    return status;
+  const conic_surfaces_look look = conic_surfaces_look_of(&w->camera, &w->render, &w->source->view, w->planes);
+  conic_source_windows *own = &((own_windows *)w->own)->surfaces;
+  status = conic_source_windows_begin(surfaces, w->renderer, &look.camera, &look.render, &look.view, look.planes, own);
+  w->step = own->step > w->step ? own->step : w->step; /* both are powers of two */
+  w->is_summed = own->is_summed;
   return status;
 }
 
 static void end_gaussian_windows(conic_source_windows *w) {
-  conic_gaussian_picture_release(w->own);
+  own_windows *own = w->own;
+  if (!own)
+    return;
+  conic_gaussian_picture_release(own->picture);
+  conic_source_windows_end(&own->surfaces);
+  conic_memory_release(w->source->context, own);
 }
 
 /* Surfaces of the fine picture's size are null where there are none. */
-static conic_status composite_window(conic_source_windows *w, const conic_window *window, const conic_image *surfaces,
+static conic_status composite_window(conic_source_windows *w, const conic_window *window, conic_image *surfaces,
                                      conic_image *image, conic_render_statistics *statistics) {
   gaussians_source *g = (gaussians_source *)w->source;
   conic_context *context = w->source->context;
+  conic_gaussian_picture *picture = ((const own_windows *)w->own)->picture;
   const int n = w->samples;
-  const conic_gaussian_window fine_window = {{n * window->x_begin, n * window->y_begin},
-                                             {n * window->x_end, n * window->y_end}};
-  fine_picture fine = {.samples = n, .is_opaque = w->render.has_background};
-  const uint64_t n_before = conic_gaussian_picture_statistics(w->own)->pairs;
+  const conic_window there = fine_window_of(w, window);
+  const conic_gaussian_window fine_window = {{there.x_begin, there.y_begin}, {there.x_end, there.y_end}};
+  fine_picture fine = {.samples = n, .is_opaque = w->render.has_background, .surfaces = surfaces};
+  const uint64_t n_before = conic_gaussian_picture_statistics(picture)->pairs;
   fine.planes.width = n * image->width;
   fine.planes.height = n * image->height;
   fine.planes.surface_z = surfaces ? surfaces->planes[CONIC_PLANE_Z] : NULL;
   conic_status status = allocate_planes(context, image, &fine);
   if (status == CONIC_OK)
-    status = conic_gaussian_picture_draw(w->own, &fine_window, &fine.planes);
+    status = conic_gaussian_picture_draw(picture, &fine_window, &fine.planes);
   if (status == CONIC_OK && surfaces)
     conic_surfaces_join(context, surfaces, fine.is_opaque ? w->render.background : NULL, g->gaussians.is_linear,
                         (uint32_t)g->gaussians.count, &fine.planes);
   if (status == CONIC_OK) {
-    clear_other_planes(image);
+    clear_other_planes(&fine, image);
     uint64_t n_covered = reduce_samples(&fine, image);
     image->is_display = !g->gaussians.is_linear;
-    g->drawn = *conic_gaussian_picture_statistics(w->own);
+    g->drawn = *conic_gaussian_picture_statistics(picture);
     tell_drawing(g, g->drawn.pairs - n_before, n_covered, statistics);
   }
   release_planes(context, &fine);
@@ -298,23 +363,55 @@ static conic_status composite_window(conic_source_windows *w, const conic_window
 
 static conic_status draw_gaussian_window(conic_source_windows *w, const conic_window *window, conic_image *image,
                                          conic_render_statistics *statistics) {
-  return composite_window(w, window, NULL, image, statistics);
+  own_windows *own = w->own;
+  conic_render_statistics of_surfaces;
+  conic_image surfaces;
+  if (!own->surfaces.source)
+    return composite_window(w, window, NULL, image, statistics);
+  const conic_window there = fine_window_of(w, window);
+  own->surfaces.other_bytes = w->other_bytes;
+  conic_status status = conic_image_allocate(w->source->context, there.x_end - there.x_begin,
+                                             there.y_end - there.y_begin, own->surfaces.planes, &surfaces);
+  if (status == CONIC_OK)
+    status = conic_source_windows_draw(&own->surfaces, &there, &surfaces, &of_surfaces);
+  if (status == CONIC_OK)
+    status = composite_window(w, window, &surfaces, image, statistics);
+  if (status == CONIC_OK)
+    add_surfaces(&of_surfaces, w->is_summed && (window->x_begin || window->y_begin), statistics);
+  memcpy(w->tallies, own->surfaces.tallies, sizeof w->tallies);
+  conic_image_release(w->source->context, &surfaces);
+  return status;
+}
+
+static conic_status count_gaussian_windows(const conic_source_windows *w, conic_render_statistics *statistics) {
+  own_windows *own = w->own;
+  const uint64_t n_covered = statistics->pixels_covered;
+  if (!own->surfaces.source)
+    return CONIC_OK;
+  memcpy(own->surfaces.tallies, w->tallies, sizeof w->tallies);
+  conic_status status = conic_source_windows_count(&own->surfaces, statistics);
+  statistics->pixels_covered = n_covered;
+  return status;
 }
 
 static void weigh_gaussian_windows(const conic_source_windows *w, const conic_window *list, size_t n, double *weights) {
   const conic_gaussians *set = &((const gaussians_source *)w->source)->gaussians;
+  const conic_source_windows *surfaces = &((const own_windows *)w->own)->surfaces;
   conic_source_windows_weigh_places(w, set->position, set->count, set->origin, list, n, weights);
+  if (surfaces->source && w->samples == 1) /* else windows are others there */
+    surfaces->source->kind->windowing->weigh(surfaces, list, n, weights);
 }
 
-const conic_source_windowing conic_gaussians_windowing = {.begin = begin_gaussian_windows,
+const conic_source_windowing conic_gaussians_windowing = {.begin = begin_windows_of_both,
                                                           .end = end_gaussian_windows,
                                                           .draw = draw_gaussian_window,
+                                                          .count = count_gaussian_windows,
                                                           .weigh = weigh_gaussian_windows};
 
 /* --- whole pictures --- */
 
 static conic_status composite_whole(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
-                                    const conic_render_options *render, int samples, const conic_image *surfaces,
+                                    const conic_render_options *render, int samples, conic_image *surfaces,
                                     conic_image *image, conic_render_statistics *statistics) {
   conic_source_windows w = {.source = source,
                             .renderer = renderer,
@@ -328,17 +425,6 @@ static conic_status composite_whole(conic_source *source, conic_renderer *render
     status = composite_window(&w, &whole, surfaces, image, statistics);
   end_gaussian_windows(&w);
   return status;
-}
-
-conic_surfaces_look conic_surfaces_look_of(const conic_camera *camera, const conic_render_options *render,
-                                           const conic_source_view *view, unsigned planes) {
-  const unsigned ids = 1u << CONIC_PLANE_ID | 1u << CONIC_PLANE_LAST;
-  conic_surfaces_look look = {conic_samples_camera(camera, view->samples, 0, camera->height), *render, *view,
-                              1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | (planes & 1u << CONIC_PLANE_NORMAL) |
-                                  (planes & ids ? 1u << CONIC_PLANE_ID : 0)};
-  look.render.has_background = 0;
-  look.view.samples = 1;
-  return look;
 }
 
 conic_status conic_source_draw_among(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
@@ -355,13 +441,21 @@ conic_status conic_source_draw_among(conic_source *source, conic_renderer *rende
     status = drawer->draw(drawer->cookie, &look.camera, &look.render, &look.view, &surfaces, &of_surfaces);
   if (status == CONIC_OK)
     status = composite_whole(source, renderer, camera, render, view->samples, &surfaces, image, statistics);
-  if (status == CONIC_OK) {
-    const uint64_t n_covered = statistics->pixels_covered;
-    conic_statistics_add(&of_surfaces, statistics);
-    statistics->pixels_covered = n_covered;
-  }
+  if (status == CONIC_OK)
+    add_surfaces(&of_surfaces, 0, statistics);
   conic_image_release(source->context, &surfaces);
   return status;
+}
+
+conic_status conic_source_draw_surfaces(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
+                                        const conic_render_options *render, const conic_source_view *view,
+                                        unsigned planes, conic_image *surfaces) {
+  const conic_surfaces_look look = conic_surfaces_look_of(camera, render, view, planes);
+  conic_status status =
+      conic_image_allocate(source->context, look.camera.width, look.camera.height, look.planes, surfaces);
+  return status == CONIC_OK ? conic_source_draw(conic_source_surfaces(source), renderer, &look.camera, &look.render,
+                                                &look.view, surfaces, NULL)
+                            : status;
 }
 
 typedef struct plain_drawing {

@@ -74,7 +74,9 @@ run_as_typed 2 render pairs/gaussians.spz pairs/splats.ply pairs/hybrid.chy -o p
 grep -q 'hybrid.chy: a hybrid is drawn without other surfaces' err || fail "$(cat err)"
 run_as_typed 2 render pairs/gaussians.spz pairs/mesh.obj -o p.pfm --device opencl
 grep -q 'not both together' err || fail "$(cat err)"
-run_as_typed 2 render pairs/gaussians.spz pairs/mesh.obj -o p.exr --aov ao
+run_as_typed 2 render pairs/gaussians.spz pairs/mesh.obj -o p.exr --aov doubt --projection fisheye
+grep -q 'doubt, with surfaces among Gaussians, is of a perspective camera' err || fail "$(cat err)"
+run_as_typed 0 render pairs/gaussians.spz pairs/mesh.obj -o p.exr --aov ao --projection fisheye --samples 2 --size 20x20
 
 # The other commands that draw use the same table.
 run 0 render pairs/splats.ply --size 20x20 -o theirs.exr --aov rgba,Z

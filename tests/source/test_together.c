@@ -4,6 +4,8 @@
 #include "conic/shot.h"
 #include "core/base/color.h"
 #include "core/lanes/instruction_sets.h"
+#include "gaussians/draw/surfaces_join.h"
+#include "source/source_kind.h"
 #include "source/surfaces_among.h"
 #include "tests/support/files.h"
 
@@ -372,6 +374,131 @@ static void check_motion(conic_context *context, const char *const names[2]) {
   conic_gaussians_release(context, &ball);
 }
 
+/* What surfaces alone have: light and colour come through what is left, and from Gaussians none is hidden. */
+static void check_own_planes(conic_context *context, const char *const names[2]) {
+  float rgb[3] = {0, 0, 0}, T = 0.25f;
+  conic_image surfaces;
+  conic_gaussian_planes joined = {.width = 1, .height = 1, .rgb = rgb, .transparency = &T};
+  CHECK_OK(conic_image_allocate(context, 1, 1, CONIC_SURFACES_PLANES | 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z,
+                                &surfaces));
+  float *albedo = surfaces.planes[CONIC_PLANE_ALBEDO], *weight = surfaces.planes[CONIC_PLANE_WEIGHT],
+        *ao = surfaces.planes[CONIC_PLANE_AO], *shadow = surfaces.planes[CONIC_PLANE_SHADOW];
+  albedo[2] = ao[0] = 0.5f;
+  weight[0] = 2.0f;
+  conic_surfaces_join(context, &surfaces, NULL, 1, 1, &joined);
+  CHECK(albedo[2] == 0.125f && albedo[0] == 0.0f && weight[0] == 0.5f && ao[0] == 0.875f && shadow[0] == 0.75f);
+  conic_image_release(context, &surfaces);
+  /* One ball before a wall, which has the shadow of another one. */
+  conic_gaussians pair = balls(context, 2, 2.0, 0.0, 0.8f);
+  conic_triangles set = wall(context, 3.0, 0.0, 0.5f);
+  conic_take_back_loans(context);
+  pair.position[0][0] = -2.0f;
+  CHECK_OK(conic_lend(context, names[0], &pair));
+  CHECK_OK(conic_lend(context, names[1], &set));
+  conic_source *source = open_scene(context, names, 2, NULL);
+  conic_shot shot = shot_of(CONIC_PROFILE_EXACT);
+  shot.render.shading = CONIC_SHADE_LAMBERT;
+  shot.render.lighting.is_given = shot.render.lighting.n_lights = 1;
+  shot.render.lighting.lights[0] =
+      (conic_light){.frame = CONIC_LIGHT_WORLD, .direction = {-2, 0, -1}, .color = {1, 1, 1}};
+  shot.light.has_shadows = 1;
+  shot.light.n_directions = 4;
+  shot.planes = CONIC_SURFACES_PLANES | 1u << CONIC_PLANE_TRANSPARENCY;
+  for (int samples = 1; samples < 3; samples++) {
+    shot.view.samples = samples;
+    conic_image image = draw(context, source, &shot);
+    double light = 0.0, left = 0.0; /* means over the pixel's samples */
+    for (int i = 0; i < samples * samples; i++) {
+      const double part = 0.5 / (double)samples, x = part * (1 + 2 * (i % samples)) / 40.0,
+                   y = part * (1 + 2 * (i / samples)) / 40.0, square = x * x + y * y;
+      const double hidden = 0.8 * exp(-4.5 * (square - 0.8 * x * x) / 0.09),
+                   part_left = 1.0 - 0.8 * exp(-2.0 * square / (1.0 + square) / 0.09);
+      light += (1.0 - part_left * hidden) / (double)(samples * samples);
+      left += part_left / (double)(samples * samples);
+    }
+    CHECK_NEAR(((const float *)image.planes[CONIC_PLANE_SHADOW])[MIDDLE], light, 0.006);
+    CHECK_NEAR(((const float *)image.planes[CONIC_PLANE_ALBEDO])[3 * MIDDLE], 0.5 * left, 1e-5);
+    CHECK_NEAR(((const float *)image.planes[CONIC_PLANE_WEIGHT])[MIDDLE], left, 1e-5);
+    const float share = ((const float *)image.planes[CONIC_PLANE_AO])[MIDDLE];
+    CHECK(share >= 1.0 - left - 1e-3 && share <= 1.0f);
+    conic_image_release(context, &image);
+  }
+  conic_source_close(source);
+  conic_triangles_release(context, &set);
+  conic_gaussians_release(context, &pair);
+}
+
+/* A wall through the place where a ball's response is greatest may be before it or behind. */
+static void check_doubt(conic_context *context, const char *const names[2]) {
+  const double off = 0.5 / 40.0, wall_z[] = {2.0 / (1.0 + 2.0 * off * off), 3.0};
+  conic_gaussians ball = balls(context, 1, 2.0, 0.0, 0.8f);
+  for (size_t k = 0; k < 2; k++) {
+    conic_triangles set = wall(context, wall_z[k], 0.0, 0.5f);
+    conic_take_back_loans(context);
+    CHECK_OK(conic_lend(context, names[0], &ball));
+    CHECK_OK(conic_lend(context, names[1], &set));
+    conic_source *source = open_scene(context, names, 2, NULL);
+    conic_shot shot = shot_of(CONIC_PROFILE_EXACT);
+    shot.planes = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_DOUBT;
+    conic_image image = draw(context, source, &shot);
+    CHECK((((const uint32_t *)image.planes[CONIC_PLANE_DOUBT])[MIDDLE] > 0) == (k == 0));
+    conic_image_release(context, &image);
+    conic_source_close(source);
+    conic_triangles_release(context, &set);
+  }
+  conic_gaussians_release(context, &ball);
+}
+
+/* Windows have the bits of the whole, and their statistics add up to its. */
+static void check_windows(conic_context *context, const char *const names[2]) {
+  conic_gaussians row = balls(context, 7, 1.2, 0.3, 0.6f);
+  conic_triangles set = wall(context, 2.0, 0.4, 0.5f);
+  conic_take_back_loans(context);
+  CHECK_OK(conic_lend(context, names[0], &row));
+  CHECK_OK(conic_lend(context, names[1], &set));
+  conic_source *source = open_scene(context, names, 2, NULL);
+  conic_shot shot = shot_of(CONIC_PROFILE_INRIA_2023);
+  conic_renderer *renderer;
+  shot.camera.width = 200;
+  shot.camera.cx = 100.0;
+  shot.render.has_background = 1;
+  shot.planes = (planes | CONIC_SURFACES_PLANES) & ~(1u << CONIC_PLANE_AO | 1u << CONIC_PLANE_SHADOW);
+  CHECK_OK(conic_renderer_create(context, &renderer));
+  for (int samples = 1; samples < 3; samples++) {
+    conic_source_windows windows;
+    conic_render_statistics statistics;
+    size_t n_wrong = 0;
+    shot.view.samples = samples;
+    shot.render.tile = samples == 1 ? 16 : 64;
+    conic_image whole = draw(context, source, &shot);
+    CHECK_OK(
+        conic_source_windows_begin(source, renderer, &shot.camera, &shot.render, &shot.view, shot.planes, &windows));
+    CHECK(windows.step % 16 == 0 && windows.step < 200 && !windows.is_summed);
+    for (int x = 0; x < 200; x += windows.step) {
+      const conic_window window = {x, x + windows.step < 200 ? x + windows.step : 200, 0, SIDE};
+      conic_image part;
+      CHECK_OK(conic_image_allocate(context, window.x_end - x, SIDE, shot.planes, &part));
+      CHECK_OK(conic_source_windows_draw(&windows, &window, &part, &statistics));
+      CHECK(part.is_display && statistics.splats_in == 7 && statistics.triangles_in == 2);
+      for (int i = 0; i < CONIC_N_PLANES; i++)
+        for (size_t y = 0; part.planes[i] && y < SIDE; y++) {
+          const size_t n = 4 * (size_t)conic_plane_describe((conic_plane)i)->n_channels;
+          n_wrong += memcmp((const char *)part.planes[i] + n * y * (size_t)part.width,
+                            (const char *)whole.planes[i] + n * (y * 200 + (size_t)x), n * (size_t)part.width) != 0;
+        }
+      conic_image_release(context, &part);
+    }
+    CHECK(n_wrong == 0);
+    CHECK_OK(conic_source_windows_count(&windows, &statistics));
+    conic_source_windows_end(&windows);
+    conic_image_release(context, &whole);
+  }
+  conic_renderer_destroy(renderer);
+  conic_source_close(source);
+  conic_triangles_release(context, &set);
+  conic_gaussians_release(context, &row);
+}
+
 int main(void) {
   const char *const names[] = {"memory:gaussians:ball", "memory:triangles:wall"};
   folder_make(files_folder);
@@ -385,6 +512,9 @@ int main(void) {
   check_scenes(context);
   check_shadow(context, names);
   check_motion(context, names);
+  check_own_planes(context, names);
+  check_doubt(context, names);
+  check_windows(context, names);
   conic_gaussians_release(context, &ball);
   files_end(context);
   return check_result();
