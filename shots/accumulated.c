@@ -26,6 +26,12 @@ static conic_status camera_at(void *cookie, double time, conic_camera *camera) {
   return conic_shot_camera(work->context, work->shot, time, camera);
 }
 
+void conic_sample_see(uint64_t index, int has_one_depth, conic_source_view *view) {
+  view->chance = conic_sequence_at(index, CONIC_SEQUENCE_SURFACE);
+  if (view->transparency != CONIC_TRANSPARENCY_NONE && has_one_depth)
+    view->transparency = CONIC_TRANSPARENCY_CHANCE;
+}
+
 static conic_status draw_sample(void *cookie, const conic_sample *sample, conic_image *image) {
   accumulating *a = cookie;
   const conic_shot *shot = a->work->shot;
@@ -33,10 +39,7 @@ static conic_status draw_sample(void *cookie, const conic_sample *sample, conic_
   conic_render_statistics statistics = {.ms = {0}};
   conic_source_view view = *a->look->view;
   conic_status status = CONIC_OK;
-  view.chance = conic_sequence_at(sample->index, CONIC_SEQUENCE_SURFACE);
-  if (view.transparency != CONIC_TRANSPARENCY_NONE &&
-      (a->work->plan.lit != CONIC_LIT_NOT || a->work->plan.is_composited))
-    view.transparency = CONIC_TRANSPARENCY_CHANCE; /* what is lit, or among Gaussians, has one depth and one normal */
+  conic_sample_see(sample->index, a->work->plan.lit != CONIC_LIT_NOT || a->work->plan.is_composited, &view);
   if (has_soft_sun(shot))
     status = conic_lighting_sample(a->work->context, &shot->render.lighting, shot->light.sun_radius_deg, sample->index,
                                    &render.lighting);

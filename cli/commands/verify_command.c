@@ -251,7 +251,15 @@ static int check_samples(const cli_session *session, verify_job *job) {
   int answer = cli_sample_check(session, &job->scene);
   if (answer != CLI_DONE || !job->scene.accumulating.n_samples)
     return answer;
-  if (job->question == CONIC_ORACLE_EXACT || cli_is_composited(&job->scene))
+  const unsigned of_gaussians = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_TRANSPARENCY;
+  if (cli_is_composited(&job->scene)) {
+    if (job->scene.is_aov_given && job->scene.shot.planes & ~of_gaussians)
+      return cli_usage(
+          "verify: of means of a Gaussian scene, it judges rgba and T; --sample I judges all planes of one");
+    job->scene.shot.planes &= of_gaussians;
+    return CLI_DONE;
+  }
+  if (job->question == CONIC_ORACLE_EXACT)
     return cli_usage("verify: --accumulate judges means of splats and triangles by their method; give --sample I");
   if (job->scene.shot.light.dome_stops > 0.0)
     return cli_usage("verify: of --shade edl, it judges samples one by one: --sample I");
@@ -269,6 +277,8 @@ static int check_judged_planes(verify_job *job) {
     job->scene.shot.planes = CLI_COMPOSITED_PLANES;
   if (is_composited && job->scene.shot.planes & ~CLI_COMPOSITED_PLANES)
     return cli_usage("verify: of a Gaussian scene, it judges rgba, Z, N, count, id, T, medianZ, inverseZ and last");
+  if (job->scene.is_transparent && !(job->scene.abilities & CONIC_SOURCE_MIXES))
+    return cli_usage("verify: --transparency is of surfaces among Gaussians; those alone are judged as opaque");
   if (is_composited && job->question == CONIC_ORACLE_EXACT)
     return cli_usage("verify: a Gaussian scene is judged by its profile, and --against exact is of splats");
   if (!is_composited && job->scene.shot.planes & ~CONIC_DRAWN_PLANES)
@@ -292,8 +302,12 @@ static int run(cli_session *session, int argc, char **argv) {
       {"accumulate", CLI_COUNT, &job.scene.accumulating.n_samples, "N",
        "as conic render has it: judge the mean of N samples, and where they are drawn anew, each of them, too",
        .minimum = 1, .maximum = 65536},
+      {"transparency", CLI_FLAG, &job.scene.is_transparent, NULL,
+       "as conic render has it: surfaces among Gaussians let light through, each sample by chance",
+       .acts = {.on = CLI_FACT(ALPHA), .is_warned = 1}},
   };
   int exit_code = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, &job.scene);
+  cli_transparency_settle(&job.scene);
   if (exit_code == CLI_DONE)
     exit_code = check_judged_planes(&job);
   if (exit_code == CLI_DONE)

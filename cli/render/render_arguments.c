@@ -335,10 +335,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
   if (compression >= 0)
     job->writing.compression = (conic_compression)compression;
   job->asked_planes = job->is_aov_given ? job->shot.planes : 0;
-  if (job->is_transparent) {
-    job->shot.view.transparency = CONIC_TRANSPARENCY_LAYERS;
-    job->opening.keeps_alpha = 1;
-  }
+  cli_transparency_settle(job);
   if (job->is_memory_given)
     job->access.memory_bytes = (uint64_t)memory_mib << 20;
   if (memory_mib < USUAL_MIB && !session->host)

@@ -1,6 +1,7 @@
 #include "cli/render/sample_options.h"
 
 #include "cli/render/fill_shot.h"
+#include "shots/way.h"
 
 int cli_sample_frame(const cli_render_job *job) {
   return job->frames.first - 1;
@@ -36,5 +37,7 @@ conic_status cli_sample_camera(cli_session *session, cli_render_job *job, conic_
   if (status == CONIC_OK)
     status = conic_shot_sample(job->source, &job->shot, own->i_sample, &sample);
   *camera = sample.camera;
+  if (job->abilities & CONIC_SOURCE_MIXES)
+    conic_sample_see(own->i_sample, 1, &job->shot.view);
   return status;
 }

@@ -59,7 +59,7 @@ static const struct {
     {F(MATTES), 0, F(EXR), "--aov cryptomatte goes into an .exr; give -o OUT.exr"},
     {F(PROGRESSIVE), F(TURNTABLE) | F(REPEATED), 0,
      "--progressive writes the pictures of one frame, not of a turntable or of --repeat"},
-    {F(TRANSPARENT) | F(MIXED), 0, F(ACCUMULATED),
+    {F(TRANSPARENT) | F(MIXED), 0, F(ACCUMULATED) | F(SAMPLE),
      "surfaces among Gaussians let light through in the mean of samples; give --accumulate N, too"},
     {F(TRANSPARENT) | F(COMPOSITED), 0, F(MIXED),
      "a Gaussian scene lets light through as it is; --transparency is of its splats, by --profile surface"},

@@ -162,6 +162,9 @@ int cli_scene_run(cli_session *session, int exit_code, cli_render_job *scene,
 /* What job's options are before any is parsed; cli_scene_parse leaves alone what is no option of its own. */
 void cli_scene_defaults(cli_render_job *job);
 
+/* --transparency, once the arguments are parsed. */
+void cli_transparency_settle(cli_render_job *job);
+
 /* Wrong usage where an output (null entries are fine), or --json's, is a file that the scene is read from. */
 int cli_scene_inputs_stay(const cli_session *session, const cli_render_job *job, const char *const *outputs,
                           int n_outputs);

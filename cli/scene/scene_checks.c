@@ -192,6 +192,13 @@ int cli_scene_check(const cli_session *session, cli_scene_words *words, cli_rend
   return answer == CLI_DONE ? cli_device_check(session, &job->device) : answer;
 }
 
+void cli_transparency_settle(cli_render_job *job) {
+  if (!job->is_transparent)
+    return;
+  job->shot.view.transparency = CONIC_TRANSPARENCY_LAYERS;
+  job->opening.keeps_alpha = 1;
+}
+
 int cli_scene_inputs_stay(const cli_session *session, const cli_render_job *job, const char *const *outputs,
                           int n_outputs) {
   const char *const beside[] = {job->camera_path, job->opening.texture_path, job->accumulating.motion_path};

@@ -129,6 +129,9 @@ CONIC_API conic_status conic_gaussian_judge(conic_context *context, const conic_
                                             const conic_gaussian_judging *judging, const conic_image *image,
                                             uint8_t *classes, conic_gaussian_verdict *verdict);
 
+/* Adds a verdict to another one, which begins as zero but for `pass`: the verdict on both pictures. */
+CONIC_API void conic_gaussian_verdict_add(const conic_gaussian_verdict *verdict, conic_gaussian_verdict *sum);
+
 /* Fills the plane `doubt` of the image: how many decisions are in doubt at each pixel, or at its most doubtful sample.
  * Errors: as conic_gaussian_judge. */
 CONIC_API conic_status conic_gaussian_find_doubts(conic_context *context, const conic_gaussians *gaussians,

@@ -196,7 +196,7 @@ static void judge_bound(void *data, size_t i, size_t pixel, const conic_gaussian
   conic_oracle_worst_put(&j->worst[i_thread], &p.fault, p.worst);
 }
 
-static void add_verdict(conic_gaussian_verdict *to, const conic_gaussian_verdict *v) {
+void conic_gaussian_verdict_add(const conic_gaussian_verdict *v, conic_gaussian_verdict *to) {
   to->judged_pixels += v->judged_pixels;
   to->covered_pixels += v->covered_pixels;
   to->wide_pixels += v->wide_pixels;
@@ -211,7 +211,11 @@ static void add_verdict(conic_gaussian_verdict *to, const conic_gaussian_verdict
   for (int plane = 0; plane < CONIC_N_PLANES; plane++) {
     to->planes[plane].max_abs = oracle_max(to->planes[plane].max_abs, v->planes[plane].max_abs);
     to->planes[plane].bound = oracle_max(to->planes[plane].bound, v->planes[plane].bound);
+    to->planes[plane].is_compared |= v->planes[plane].is_compared;
   }
+  for (int k = 0; k < v->n_worst && to->n_worst < CONIC_MAX_FAULTS; k++)
+    to->worst[to->n_worst++] = v->worst[k];
+  to->pass &= v->pass;
 }
 
 static void add_worst(oracle_worst *to, const oracle_worst *w) {
@@ -243,7 +247,7 @@ static conic_status judge_all(oracle_entry *e, judge_job *j, conic_gaussian_verd
   conic_status status = j->verdicts && j->worst ? conic_oracle_bound_all(b) : CONIC_ERROR_MEMORY;
   oracle_worst worst = {.n = 0};
   for (size_t k = 0; status == CONIC_OK && k < threads; k++) {
-    add_verdict(verdict, &j->verdicts[k]);
+    conic_gaussian_verdict_add(&j->verdicts[k], verdict);
     add_worst(&worst, &j->worst[k]);
   }
   memcpy(verdict->worst, worst.faults, sizeof verdict->worst);

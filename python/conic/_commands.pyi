@@ -321,6 +321,7 @@ def verify(
     turntable: Optional[Union[str, float, Sequence[float]]] = None,
     frames: Optional[Union[str, float, Sequence[float]]] = None,
     accumulate: Optional[Union[int, str]] = None,
+    transparency: Optional[bool] = None,
     size: Optional[Union[str, Sequence[int]]] = None,
     view: Optional[Union[str, float, Sequence[float]]] = None,
     azimuth: Optional[float] = None,
@@ -393,6 +394,7 @@ def verify(
     frames: of --turntable, which, from 1 [1]
     accumulate: as conic render has it: judge the mean of N samples, and where they are drawn anew, each of
         them, too
+    transparency: as conic render has it: surfaces among Gaussians let light through, each sample by chance
     size: the picture's width and height in pixels; cameras of a file are scaled to it [1024x1024, or the
         file's]
     camera: cameras, in place of --azimuth and those below it: a COLMAP folder, transforms.json, cameras.json,

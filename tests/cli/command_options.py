@@ -45,7 +45,7 @@ CASES = {
     "info": {"--allow-outside": None, "--check": None, "--cameras": None, "--size": "30x30"},
     "verify": {"--against": "exact", "--image": "picture.exr", "--pixels": "50", "--sample": "1", "--accumulate": "2",
                "--aperture": "0.2", "--focus": "1", "--shutter": "0:0.5", "--motion": "motion.json", "--turntable": "4",
-               "--frames": "2"},
+               "--frames": "2", "--transparency": None},
     "judge": {"--picture": "other.exr", "--floats": "own", "--max-wrong": "9", "--pixels": "50", "--map": "map.png",
               "--report": "r.html", "--transfer": "linear", "--codes": "down", "--clipped": None, "--straight": None,
               "--no-diagnosis": None, "--allow-vague": None, "--time": None, "--suite": "suite", "--pictures": "suite/expected", "--level": "1",

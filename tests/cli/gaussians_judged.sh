@@ -76,6 +76,29 @@ has '"surface": {'
 run 2 project "${both[@]}" -o t.csv
 grep -q 'conic render, verify, judge and explain take both' err || fail "$(cat err)"
 
+# Glass among Gaussians: each sample, and the mean that is drawn
+printf 'newmtl pane\nKd 0.8 0.3 0.2\nd 0.4\n' > pane.mtl
+printf 'mtllib pane.mtl\nusemtl pane\nv -2 -2 -1\nv 2 -2 1\nv 2 2 1\nv -2 2 -1\nf 1 2 3 4\n' > pane.obj
+run 0 make gaussians -n 100 -o scene.ply
+glass=(scene.ply pane.obj --as mesh --profile gsplat-1.6 --size 40x30 --transparency)
+run 0 verify "${glass[@]}" --sample 3
+has '0 wrong$'
+run 0 verify "${glass[@]}" --accumulate 5
+has '^samples   5, 0 pixels of their mean wrong$'
+has '^judged    6000 of 6000 pixels: .* 0 wrong$'
+run 0 render "${glass[@]}" --accumulate 5 --aov rgba,T -o glass.exr
+run 0 verify "${glass[@]}" --accumulate 5 --image glass.exr --aperture 0
+run 1 verify "${glass[@]}" --accumulate 4 --image glass.exr
+has '^samples   4, [1-9][0-9]* pixels of their mean wrong$'
+has '^worst     pixel'
+run 1 verify "${glass[@]:0:8}" --accumulate 5 --image glass.exr
+run 2 verify "${glass[@]}"
+grep -q 'give --accumulate N' err || fail "$(cat err)"
+run 2 verify "${glass[@]}" --accumulate 2 --aov rgba,Z
+grep -q 'it judges rgba and T' err || fail "$(cat err)"
+run 2 verify pane.obj --as mesh --transparency --sample 1
+grep -q 'those alone are judged as opaque' err || fail "$(cat err)"
+
 if [[ ! -e $data/biker.spz ]] || ! "$conic" --version | grep -q '^In this build:.*zstd'; then
   echo "skipped: $data/biker.spz is not there, or this build does not read it"
   [[ $failures -eq 0 ]]

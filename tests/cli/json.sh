@@ -190,6 +190,7 @@ write explain explain explain one.ply --size 64x48 --pixel 30,20
 printf '\0\0\0\0\0\0\200\77\0\0\0\100\0\0\200\77\0\0\200\77\0\0\0\77\1\2\3\4\200\177\200\200' > two.splat
 write verify-gaussians verify_gaussians verify two.splat --profile exact --size 40x40
 write verify-gaussians-sample verify_gaussians verify two.splat --profile exact --size 20x20 --sample 3
+write verify-gaussians-mean verify_gaussians verify two.splat --profile exact --size 20x20 --accumulate 2
 write verify-gaussians-samples verify_gaussians verify two.splat --profile inria-2023 --size 20x20 --samples 2
 run 0 render two.splat --profile gsplat-1.6 --size 40x40 -o two.exr
 write verify-gaussians-wrong verify_gaussians verify two.splat --profile khr-2026 --size 40x40 --image two.exr
