@@ -3,6 +3,7 @@
 #include "cli/command.h"
 #include "cli/commands/gaussian_commands.h"
 #include "cli/outputs.h"
+#include "cli/scene/surfaces_drawn.h"
 #include "core/files/disk.h"
 
 typedef struct gradient_job {
@@ -96,6 +97,7 @@ static conic_status differentiate(cli_session *session, gradient_job *job) {
   conic_camera camera;
   conic_gradient_options how;
   conic_float_model model;
+  cli_surfaces_drawn drawn = {.given = NULL};
   conic_status status = cli_scene_camera(session, &job->scene, 0);
   camera = job->scene.shot.camera;
   if (status == CONIC_OK)
@@ -107,8 +109,12 @@ static conic_status differentiate(cli_session *session, gradient_job *job) {
   how.leaves_doubts = job->leaves_doubts != 0;
   double start = cli_seconds();
   if (status == CONIC_OK)
+    status = cli_draw_surfaces(&job->scene, &camera, 0, &drawn);
+  how.surfaces = drawn.given;
+  if (status == CONIC_OK)
     status = conic_gaussian_gradient_find(session->context, conic_source_gaussians(job->scene.source), &camera,
                                           &options, &job->weights, &how, &job->gradient);
+  conic_image_release(session->context, &drawn.image);
   job->ms = 1e3 * (cli_seconds() - start);
   if (status == CONIC_OK && job->output)
     status = conic_gaussian_gradient_write(session->context, job->output, &job->gradient);

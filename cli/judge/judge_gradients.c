@@ -211,6 +211,8 @@ static int check_gradient_judging(cli_session *session, const gradients_job *job
   const conic_gaussian_profile profile = scene->shot.gaussians.profile;
   if (!job->files.weights)
     return cli_usage("judge: --gradients needs --weights W.exr");
+  if (job->scene.abilities & CONIC_SOURCE_MIXES)
+    return cli_usage("judge: --gradients is of Gaussians alone: leave the surfaces out; conic gradient takes both");
   if (!cli_is_composited(scene) || !conic_gradient_has_profile(profile) || profile == CONIC_PROFILE_EXACT)
     return cli_usage("judge: --gradients is of Gaussian scenes by a profile of ellipses without limits of axes, as "
                      "gsplat-1.6; give --profile");

@@ -107,6 +107,8 @@ static int check_intermediates(cli_session *session, const intermediates_job *jo
   const cli_render_job *scene = &job->scene;
   if (!cli_is_composited(scene))
     return cli_usage("judge: --intermediates is of Gaussian scenes by a profile");
+  if (scene->abilities & CONIC_SOURCE_MIXES)
+    return cli_usage("judge: --intermediates is of Gaussians before they are composited: leave the surfaces out");
   if (scene->shot.view.samples > 1 || scene->shot.gaussians.prefilter != 0.0)
     return cli_usage("judge: --intermediates is of one sample a pixel, without a prefilter");
   int exit_code = cli_check_inputs_stay(session, &job->path, 1, NULL, 0);

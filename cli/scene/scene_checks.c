@@ -149,7 +149,8 @@ static int settle_roles(const cli_session *session, const cli_render_job *job, c
 
 /* Gaussian scenes with surfaces among them. */
 static int takes_both(const char *command) {
-  return strcmp(command, "verify") == 0 || strcmp(command, "judge") == 0 || strcmp(command, "explain") == 0;
+  return strcmp(command, "verify") == 0 || strcmp(command, "judge") == 0 || strcmp(command, "explain") == 0 ||
+         strcmp(command, "gradient") == 0;
 }
 
 int cli_scene_check(const cli_session *session, cli_scene_words *words, cli_render_job *job) {
@@ -183,7 +184,8 @@ int cli_scene_check(const cli_session *session, cli_scene_words *words, cli_rend
   answer = cli_effects_check(session, words, job);
   if (answer == CLI_DONE && job->abilities & CONIC_SOURCE_MIXES && !job->is_for_looking &&
       !takes_both(session->command))
-    answer = cli_usage("%s: it takes Gaussian scenes, or surfaces; conic render, verify, judge and explain take both",
+    answer = cli_usage("%s: it is of Gaussians, or of surfaces: leave the others out; conic render, verify, judge, "
+                       "explain and gradient take both",
                        session->command);
   job->shot.view.is_alone &=
       job->shot.view.error_px > 0.0 && !job->opening.cache && !(job->effects.asked & CLI_DRAWS_MORE);

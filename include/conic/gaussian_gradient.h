@@ -45,6 +45,8 @@ typedef struct conic_gradient_options {
   uint32_t leaves_doubts;         /* do not look for doubts */
   uint8_t *wrong_kinds;           /* where one is judged, takes of each Gaussian bits 1 << conic_gradient_kind of the
                                      kinds that are wrong; may be null */
+  const conic_gaussian_surfaces *surfaces; /* among the Gaussians, which the derivative takes as given; null: there are
+                                              none. Not where one is judged */
 } conic_gradient_options;
 
 /* Strict floats, activated values, doubts are looked for. */

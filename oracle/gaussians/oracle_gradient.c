@@ -97,14 +97,16 @@ int conic_oracle_pixel_weights(const conic_gaussian_weights *w, size_t pixel, do
 CONIC_DEFINE_ORDER_BY_TWO(compare_met, oracle_met, key, index)
 
 /* What covers the pixel, in its order. */
-static size_t meet_all_shown(const oracle_gradient_job *j, gradient_worker *w, size_t n, size_t x, size_t y) {
+static size_t meet_all_shown(const oracle_gradient_job *j, gradient_worker *w, size_t n, size_t x, size_t y,
+                             const oracle_surface *surface) {
   const int is_sorted = j->view.rules->shape != CONIC_SHAPE_RAY;
   size_t n_met = 0;
   double T = 1.0;
   for (size_t i = 0; i < n; i++) {
     const oracle_shown *s = w->shown[i];
     if (x < s->first[0] || x > s->last[0] || y < s->first[1] || y > s->last[1] ||
-        conic_oracle_meet_shown(&j->view, s, (double)x + 0.5, (double)y + 0.5, &w->met[n_met]) != ORACLE_COVERS)
+        conic_oracle_meet_shown(&j->view, s, (double)x + 0.5, (double)y + 0.5, &w->met[n_met]) != ORACLE_COVERS ||
+        (surface && w->met[n_met].z >= surface->z))
       continue;
     if (j->noise)
       conic_oracle_disturb_met(j, s, (double)x + 0.5, (double)y + 0.5, &w->met[n_met]);
@@ -125,7 +127,10 @@ static double differentiate_pixel(const oracle_gradient_job *j, gradient_worker 
   double behind;
   if (!conic_oracle_pixel_weights(j->weights, y * (size_t)j->weights->width + x, pixel.weights))
     return 0.0;
-  size_t n_met = meet_all_shown(j, w, n, x, y);
+  oracle_surface surface;
+  if (j->surfaces && conic_oracle_surface_at(j->surfaces, (int)x, (int)y, &surface))
+    pixel.surface = &surface;
+  size_t n_met = meet_all_shown(j, w, n, x, y, pixel.surface);
   const double loss = conic_oracle_gradient_forth(&j->view, &pixel, w->shown, w->met, &n_met, &behind);
   for (size_t i = 0; i < n_met; i++)
     is_touched[w->met[i].entry] = 1;

@@ -4,6 +4,7 @@
 
 #include "conic/gaussian_gradient.h"
 #include "oracle/gaussians/oracle_gaussian.h"
+#include "oracle/gaussians/oracle_surface.h"
 
 /* What a Gaussian is at the pixels, by which derivatives are summed up. */
 enum {
@@ -54,8 +55,9 @@ enum { N_WEIGHTS = 5 };
 typedef struct oracle_gradient_pixel {
   double x, y, weights[N_WEIGHTS];
   const float *background;
-  int goes_on;     /* all are composited, whatever T is */
-  int passes_most; /* the derivative goes through α's greatest, as if it were not held there */
+  const oracle_surface *surface; /* null: there is none */
+  int goes_on;                   /* all are composited, whatever T is */
+  int passes_most;               /* the derivative goes through α's greatest, as if it were not held there */
 } oracle_gradient_pixel;
 
 /* Composites the list in its order, until it ends: fills in `before`, by_weight and by_z, and sets *n to how many are

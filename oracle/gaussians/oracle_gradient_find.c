@@ -144,6 +144,7 @@ conic_status conic_oracle_gradient_doubts(oracle_gradient_job *j, oracle_entry *
     e->bounding.pixels = pixels;
     e->bounding.take = pass_bound;
     e->bounding.note = note_doubts;
+    e->bounding.surfaces = j->surfaces;
     e->bounding.data = j;
     e->bounding.task = "doubts";
     status = conic_oracle_bound_all(&e->bounding);
@@ -201,6 +202,8 @@ conic_status conic_oracle_gradient_begin(conic_context *context, const conic_gau
   conic_status status = conic_oracle_enter(context, set, camera, options, own.model ? own.model : &model, 1, e);
   if (status == CONIC_OK)
     status = check_gradient_weights(context, weights, camera);
+  if (status == CONIC_OK && own.surfaces && !conic_oracle_surfaces_fit(own.surfaces, camera->width, camera->height, 0))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "gradient: the surfaces are not those of the picture's pixels");
   if (status == CONIC_OK && !conic_gradient_has_profile(e->options.profile))
     return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "gradient: the profile %s has none yet",
                       conic_gaussian_profile_name(e->options.profile));
@@ -214,6 +217,7 @@ conic_status conic_oracle_gradient_begin(conic_context *context, const conic_gau
                              .weights = weights,
                              .model = own.leaves_doubts ? NULL : &e->model,
                              .background = e->options.background,
+                             .surfaces = own.surfaces,
                              .view = e->view,
                              .gradient = gradient,
                              .wrong_kinds = own.wrong_kinds};

@@ -44,6 +44,7 @@ struct oracle_gradient_job {
   const conic_gaussian_weights *weights;
   const conic_float_model *model; /* null: doubts are not looked for */
   const float *background;
+  const conic_gaussian_surfaces *surfaces; /* null: there are none */
   oracle_gaussian_view view;
   oracle_eye eye;
   conic_gaussian_gradient *gradient;

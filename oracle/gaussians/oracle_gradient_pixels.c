@@ -156,10 +156,12 @@ double conic_oracle_gradient_forth(const oracle_gaussian_view *view, const oracl
     T = rest;
   }
   *n = n_met;
-  const double z = sum > 0.0 ? sum_of_z / sum : 0.0;
-  *behind = -w[3];
+  const oracle_surface *surface = pixel->surface;
+  const double z = !surface && sum > 0.0 ? sum_of_z / sum : 0.0;
+  *behind = surface ? w[4] * surface->z : -w[3]; /* a surface makes A = 1, and Z = Σ w·z + T·Z_S */
   for (int c = 0; c < 3; c++)
-    *behind += w[c] * (double)pixel->background[c];
+    *behind += w[c] * (surface ? surface->color[c] : (double)pixel->background[c]);
+  sum = surface ? 1.0 : sum;
   for (size_t i = 0; i < n_met; i++) {
     const double *color = shown[met[i].entry]->color;
     double by_weight = w[0] * color[0] + w[1] * color[1] + w[2] * color[2];
@@ -167,7 +169,7 @@ double conic_oracle_gradient_forth(const oracle_gaussian_view *view, const oracl
     met[i].by_weight = by_weight + (sum > 0.0 ? w[4] * (met[i].z - z) / sum : 0.0);
     met[i].by_z = sum > 0.0 ? w[4] * met[i].alpha * met[i].before / sum : 0.0;
   }
-  return loss + w[3] + *behind * T + w[4] * z;
+  return loss + w[3] + *behind * T + w[4] * (surface ? sum_of_z : z);
 }
 
 /* q = |g × m|²/|g|² and z = g·m/|g|²; of a flat one, what they come to. */

@@ -73,8 +73,15 @@ run 0 judge "${both[@]}" --picture both.exr
 run 1 judge "${both[@]}" --picture a.exr
 run 0 explain "${both[@]}" --pixel 20,20
 has '"surface": {'
+run 0 make gaussians -n 9 -o nine.ply
+run 0 project nine.ply --profile gsplat-1.6 --size 40x40 -o nine.npz
+run 0 gradient "${both[@]}" --weights both.exr -o both.ply
+run 2 judge "${both[@]}" --weights both.exr --gradients both.ply
+grep -q 'leave the surfaces out; conic gradient takes both' err || fail "$(cat err)"
+run 2 judge nine.ply wall.obj --profile gsplat-1.6 --size 40x40 --intermediates nine.npz
+grep -q 'before they are composited: leave the surfaces out' err || fail "$(cat err)"
 run 2 project "${both[@]}" -o t.csv
-grep -q 'conic render, verify, judge and explain take both' err || fail "$(cat err)"
+grep -q 'leave the others out; conic render, verify' err || fail "$(cat err)"
 
 # Glass among Gaussians: each sample, and the mean that is drawn
 printf 'newmtl pane\nKd 0.8 0.3 0.2\nd 0.4\n' > pane.mtl

@@ -1,4 +1,5 @@
 /* Gaussians among surfaces: by closed forms, by the oracle, and to the bit by every way of drawing them. */
+#include "conic/gaussian_gradient.h"
 #include "conic/gaussian_judge.h"
 #include "conic/loan.h"
 #include "conic/shot.h"
@@ -442,11 +443,101 @@ static void check_doubt(conic_context *context, const char *const names[2]) {
     shot.planes = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_DOUBT;
     conic_image image = draw(context, source, &shot);
     CHECK((((const uint32_t *)image.planes[CONIC_PLANE_DOUBT])[MIDDLE] > 0) == (k == 0));
+    static double alpha[PIXELS];
+    conic_renderer *renderer;
+    conic_image surfaces;
+    conic_gradient_options how;
+    conic_gaussian_gradient g;
+    alpha[MIDDLE] = 1.0;
+    conic_source_settle(source, &shot.render);
+    CHECK_OK(conic_renderer_create(context, &renderer));
+    CHECK_OK(conic_source_draw_surfaces(source, renderer, &shot.camera, &shot.render, &shot.view, 0, &surfaces));
+    conic_gradient_options_init(&how);
+    how.surfaces = &(conic_gaussian_surfaces){.image = &surfaces};
+    const conic_gaussian_weights weights = {.width = SIDE, .height = SIDE, .alpha = alpha};
+    CHECK_OK(conic_gaussian_gradient_find(context, &ball, &shot.camera, &shot.gaussians, &weights, &how, &g));
+    CHECK((g.doubtful[CONIC_DOUBT_SURFACE] > 0) == (k == 0) && g.loss == 1.0);
+    conic_gaussian_gradient_release(context, &g);
+    conic_image_release(context, &surfaces);
+    conic_renderer_destroy(renderer);
     conic_image_release(context, &image);
     conic_source_close(source);
     conic_triangles_release(context, &set);
   }
   conic_gaussians_release(context, &ball);
+}
+
+/* Σ W·C of a picture, drawn in float. */
+static double loss_of(conic_context *context, conic_source *source, const conic_shot *shot, const double *weights) {
+  conic_image image = draw(context, source, shot);
+  double sum = 0.0;
+  for (size_t i = 0; i < PIXELS; i++) {
+    for (size_t c = 0; c < 3; c++)
+      sum += weights[5 * i + c] * (double)pixel_of(&image, i)[c];
+    sum += weights[5 * i + 3] * (double)pixel_of(&image, i)[3];
+    sum += weights[5 * i + 4] * (double)((const float *)image.planes[CONIC_PLANE_Z])[i];
+  }
+  conic_image_release(context, &image);
+  return sum;
+}
+
+/* The derivative among surfaces is what pictures differ by. */
+static void check_gradient(conic_context *context, const char *const names[2], conic_gaussian_profile profile) {
+  static double weights[5 * PIXELS], rgb[3 * PIXELS], alpha[PIXELS], z[PIXELS];
+  conic_gaussians row = balls(context, 7, 1.2, 0.3, 0.6f);
+  conic_triangles set = wall(context, 2.0, 0.4, 0.5f);
+  conic_take_back_loans(context);
+  for (size_t i = 0; i < 2; i++) /* where there is no wall */
+    set.position[1][i] = 0.1f;
+  CHECK_OK(conic_lend(context, names[0], &row));
+  CHECK_OK(conic_lend(context, names[1], &set));
+  conic_source *source = open_scene(context, names, 2, NULL);
+  conic_shot shot = shot_of(profile);
+  conic_renderer *renderer;
+  conic_image surfaces;
+  for (size_t i = 0; i < PIXELS; i++) {
+    for (size_t c = 0; c < 5; c++)
+      weights[5 * i + c] = (double)(i * (7 + 4 * c) % 11) / 11.0 - 0.3;
+    memcpy(rgb + 3 * i, weights + 5 * i, 3 * sizeof *rgb);
+    alpha[i] = weights[5 * i + 3];
+    z[i] = weights[5 * i + 4];
+  }
+  conic_source_settle(source, &shot.render);
+  CHECK_OK(conic_renderer_create(context, &renderer));
+  CHECK_OK(conic_source_draw_surfaces(source, renderer, &shot.camera, &shot.render, &shot.view, 0, &surfaces));
+  const conic_gaussian_surfaces given = {&surfaces, 0, 7};
+  const conic_gaussian_weights w = {.width = SIDE, .height = SIDE, .rgb = rgb, .alpha = alpha, .z = z};
+  conic_gradient_options how;
+  conic_gaussian_gradient g;
+  conic_gradient_options_init(&how);
+  how.surfaces = &given;
+  CHECK_OK(conic_gaussian_gradient_find(context, &row, &shot.camera, &shot.gaussians, &w, &how, &g));
+  CHECK_NEAR(loss_of(context, source, &shot, weights), g.loss, 2e-3);
+  for (size_t i = 0; i < 7; i++) {
+    float *const numbers[] = {&row.opacity[i], &row.sh[3 * i + 1]};
+    const double found[] = {g.opacity[i], g.sh[3 * i + 1]};
+    for (size_t k = 0; k < 2; k++) {
+      const float at = *numbers[k], step = 1.0f / 64.0f;
+      double losses[2];
+      for (int side = 0; side < 2; side++) {
+        *numbers[k] = at + (side ? step : -step);
+        conic_source_close(source);
+        source = open_scene(context, names, 2, NULL);
+        losses[side] = loss_of(context, source, &shot, weights);
+      }
+      *numbers[k] = at;
+      CHECK_NEAR((losses[1] - losses[0]) / (2.0 * (double)step), found[k], 0.01);
+    }
+  }
+  how.surfaces = &(conic_gaussian_surfaces){.image = &(conic_image){.width = 3, .height = 3}};
+  conic_gaussian_gradient_release(context, &g);
+  CHECK(conic_gaussian_gradient_find(context, &row, &shot.camera, &shot.gaussians, &w, &how, &g) ==
+        CONIC_ERROR_ARGUMENT);
+  conic_image_release(context, &surfaces);
+  conic_renderer_destroy(renderer);
+  conic_source_close(source);
+  conic_triangles_release(context, &set);
+  conic_gaussians_release(context, &row);
 }
 
 /* Windows have the bits of the whole, and their statistics add up to its. */
@@ -514,6 +605,8 @@ int main(void) {
   check_motion(context, names);
   check_own_planes(context, names);
   check_doubt(context, names);
+  check_gradient(context, names, CONIC_PROFILE_EXACT);
+  check_gradient(context, names, CONIC_PROFILE_GSPLAT_1_6);
   check_windows(context, names);
   conic_gaussians_release(context, &ball);
   files_end(context);
