@@ -89,10 +89,9 @@ static void take_central(const reduction *r, conic_plane plane, size_t corner, s
          sizeof *fine);
 }
 
-static const conic_plane means[] = {CONIC_PLANE_WEIGHT, CONIC_PLANE_TRANSPARENCY, CONIC_PLANE_INVERSE_Z, CONIC_PLANE_AO,
-                                    CONIC_PLANE_SHADOW},
-                         centrals[] = {CONIC_PLANE_Z, CONIC_PLANE_ID, CONIC_PLANE_CLUSTER, CONIC_PLANE_MEDIAN_Z,
-                                       CONIC_PLANE_LAST};
+static const conic_plane means[] = {CONIC_PLANE_WEIGHT, CONIC_PLANE_TRANSPARENCY, CONIC_PLANE_AO, CONIC_PLANE_SHADOW},
+                         centrals[] = {CONIC_PLANE_Z,        CONIC_PLANE_ID,        CONIC_PLANE_CLUSTER,
+                                       CONIC_PLANE_MEDIAN_Z, CONIC_PLANE_INVERSE_Z, CONIC_PLANE_LAST};
 
 enum { N_MEANS = sizeof means / sizeof *means, N_CENTRALS = sizeof centrals / sizeof *centrals };
 

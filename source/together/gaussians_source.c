@@ -106,10 +106,6 @@ static int wants(const conic_image *image, conic_plane plane) {
   return image->planes[plane] != NULL;
 }
 
-static int is_of_surfaces(const fine_picture *fine, int plane) {
-  return fine->surfaces && CONIC_SURFACES_PLANES >> plane & 1;
-}
-
 static conic_status allocate_planes(conic_context *context, const conic_image *image, fine_picture *fine) {
   conic_gaussian_planes *p = &fine->planes;
   const size_t n = (size_t)p->width * (size_t)p->height;
@@ -141,12 +137,6 @@ static void release_planes(conic_context *context, fine_picture *fine) {
                              p->id, p->last);
 }
 
-/* The sample nearest to the pixel's centre; of four the upper left. */
-static size_t middle_sample(const fine_picture *fine, size_t x, size_t y) {
-  size_t n = (size_t)fine->samples, middle = (n - 1) / 2;
-  return (y * n + middle) * (size_t)fine->planes.width + x * n + middle;
-}
-
 static double mean_of(const fine_picture *fine, const float *plane, size_t channels, size_t channel, size_t x,
                       size_t y) {
   const size_t n = (size_t)fine->samples, width = (size_t)fine->planes.width;
@@ -166,48 +156,40 @@ static void mean_normal(const fine_picture *fine, size_t x, size_t y, float norm
     normal[c] = (float)n[c];
 }
 
-static uint32_t greatest_count(const fine_picture *fine, size_t x, size_t y) {
-  const size_t n = (size_t)fine->samples;
-  uint32_t greatest = 0;
-  for (size_t row = y * n; row < (y + 1) * n; row++)
-    for (size_t column = x * n; column < (x + 1) * n; column++) {
-      uint32_t count = fine->planes.count[row * (size_t)fine->planes.width + column];
-      greatest = count > greatest ? count : greatest;
-    }
-  return greatest;
-}
-
-/* Makes one pixel of n × n samples, as docs/reference/picture.md defines it. Returns whether it shows anything. */
+/* Makes colour, alpha and normal of one pixel of n × n samples. Returns whether it shows anything. */
 static int reduce_pixel(const fine_picture *fine, size_t x, size_t y, size_t pixel, const conic_image *image) {
   const conic_gaussian_planes *p = &fine->planes;
-  const size_t middle = middle_sample(fine, x, y);
-  const float *const singles[] = {p->z, p->median_z, p->inverse_z};
-  const uint32_t *const words[] = {p->id, p->last};
-  static const conic_plane single_planes[] = {CONIC_PLANE_Z, CONIC_PLANE_MEDIAN_Z, CONIC_PLANE_INVERSE_Z};
-  static const conic_plane word_planes[] = {CONIC_PLANE_ID, CONIC_PLANE_LAST};
   float T = (float)mean_of(fine, p->transparency, 1, 0, x, y), *rgba = image->planes[CONIC_PLANE_RGBA];
   for (size_t c = 0; c < 3 && rgba; c++)
     rgba[4 * pixel + c] = (float)mean_of(fine, p->rgb, 3, c, x, y);
   if (rgba)
     rgba[4 * pixel + 3] = fine->is_opaque ? 1.0f : 1.0f - T;
-  if (wants(image, CONIC_PLANE_TRANSPARENCY))
-    ((float *)image->planes[CONIC_PLANE_TRANSPARENCY])[pixel] = T;
-  for (int i = 0; i < 3; i++)
-    if (singles[i])
-      ((float *)image->planes[single_planes[i]])[pixel] = singles[i][middle];
-  for (int i = 0; i < 2; i++)
-    if (words[i])
-      ((uint32_t *)image->planes[word_planes[i]])[pixel] = words[i][middle];
   if (p->normal)
     mean_normal(fine, x, y, (float *)image->planes[CONIC_PLANE_NORMAL] + 3 * pixel);
-  if (p->count)
-    ((uint32_t *)image->planes[CONIC_PLANE_COUNT])[pixel] = greatest_count(fine, x, y);
-  for (int plane = 0; plane < CONIC_N_PLANES; plane++) {
-    const size_t n = (size_t)conic_plane_describe((conic_plane)plane)->n_channels;
-    for (size_t c = 0; c < n && image->planes[plane] && is_of_surfaces(fine, plane); c++)
-      ((float *)image->planes[plane])[n * pixel + c] = (float)mean_of(fine, fine->surfaces->planes[plane], n, c, x, y);
-  }
   return T < 1.0f;
+}
+
+/* All other planes, as docs/reference/picture.md defines them; those that nobody fills are 0. */
+static void reduce_others(conic_context *context, const fine_picture *picture, const conic_image *image) {
+  const conic_gaussian_planes *p = &picture->planes;
+  conic_image fine = {.width = p->width, .height = p->height}, others = *image;
+  for (int i = 0; i < CONIC_N_PLANES && picture->surfaces; i++)
+    fine.planes[i] = CONIC_SURFACES_PLANES >> i & 1 ? picture->surfaces->planes[i] : NULL;
+  fine.planes[CONIC_PLANE_TRANSPARENCY] = p->transparency;
+  fine.planes[CONIC_PLANE_Z] = p->z;
+  fine.planes[CONIC_PLANE_MEDIAN_Z] = p->median_z;
+  fine.planes[CONIC_PLANE_INVERSE_Z] = p->inverse_z;
+  fine.planes[CONIC_PLANE_COUNT] = p->count;
+  fine.planes[CONIC_PLANE_ID] = p->id;
+  fine.planes[CONIC_PLANE_LAST] = p->last;
+  others.planes[CONIC_PLANE_RGBA] = others.planes[CONIC_PLANE_NORMAL] = NULL;
+  for (int i = 0; i < CONIC_N_PLANES; i++)
+    if (others.planes[i] && !fine.planes[i]) {
+      memset(others.planes[i], 0,
+             conic_image_pixels(image) * (size_t)conic_plane_describe((conic_plane)i)->n_channels * 4);
+      others.planes[i] = NULL;
+    }
+  conic_samples_reduce(context, &fine, picture->samples, 0, 0, &others);
 }
 
 static uint64_t reduce_samples(const fine_picture *fine, const conic_image *image) {
@@ -216,17 +198,6 @@ static uint64_t reduce_samples(const fine_picture *fine, const conic_image *imag
     for (size_t x = 0; x < (size_t)image->width; x++)
       n_covered += (uint64_t)reduce_pixel(fine, x, y, y * (size_t)image->width + x, image);
   return n_covered;
-}
-
-/* Clears the planes that compositing does not fill. */
-static void clear_other_planes(const fine_picture *fine, const conic_image *image) {
-  const unsigned made = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_TRANSPARENCY | 1u << CONIC_PLANE_Z |
-                        1u << CONIC_PLANE_MEDIAN_Z | 1u << CONIC_PLANE_INVERSE_Z | 1u << CONIC_PLANE_ID |
-                        1u << CONIC_PLANE_LAST | 1u << CONIC_PLANE_NORMAL | 1u << CONIC_PLANE_COUNT;
-  for (int i = 0; i < CONIC_N_PLANES; i++)
-    if (image->planes[i] && !(made >> i & 1) && !is_of_surfaces(fine, i))
-      memset(image->planes[i], 0,
-             conic_image_pixels(image) * (size_t)conic_plane_describe((conic_plane)i)->n_channels * 4);
 }
 
 static void tell_drawing(const gaussians_source *g, uint64_t n_pairs, uint64_t n_covered,
@@ -351,7 +322,7 @@ static conic_status composite_window(conic_source_windows *w, const conic_window
     conic_surfaces_join(context, surfaces, fine.is_opaque ? w->render.background : NULL, g->gaussians.is_linear,
                         (uint32_t)g->gaussians.count, &fine.planes);
   if (status == CONIC_OK) {
-    clear_other_planes(&fine, image);
+    reduce_others(context, &fine, image);
     uint64_t n_covered = reduce_samples(&fine, image);
     image->is_display = !g->gaussians.is_linear;
     g->drawn = *conic_gaussian_picture_statistics(picture);
