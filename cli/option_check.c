@@ -60,6 +60,7 @@ static const struct {
     [CLI_FACT_NAMELESS] = {"nameless", "standard output or a name without an ending"},
     [CLI_FACT_OPENCL] = {"opencl", "--device opencl"},
     [CLI_FACT_CUBE] = {NULL, "--projection cube"},
+    [CLI_FACT_MATTES] = {"mattes", "--aov cryptomatte"},
     [CLI_FACT_MASKED] = {"masked", "--ao, --shadow or a lamp"},
     [CLI_FACT_EXACT] = {"exact", "Gaussian scenes by --profile exact (the others have a filter of their own)"},
 };

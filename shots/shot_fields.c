@@ -350,6 +350,7 @@ static const conic_shot_row writing_list[] = {
     {CONIC_ROW_TRUTH, AT(is_bare), NULL, "files to look at have no dark greys behind the picture"},
     {CONIC_ROW_TRUTH, AT(has_legend), NULL, "the picture says what its colours mean"},
     {CONIC_ROW_TRUTH, AT(has_mattes), NULL, "an EXR has mattes"},
+    {CONIC_ROW_TEXT, AT(matte_by), NULL, "the property of Gaussians whose values have a matte each"},
     RESERVED(reserved)};
 TABLE(writing, NULL, NULL)
 #undef S

@@ -364,6 +364,7 @@ static void begin_writing(const conic_shot_writing *writing, cli_render_job *job
   job->writing.compression = writing->compression;
   job->has_legend = writing->has_legend;
   job->has_mattes = writing->has_mattes;
+  job->matte_by = writing->matte_by;
   job->is_background_given = writing->is_bare;
 }
 

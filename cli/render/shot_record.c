@@ -36,6 +36,7 @@ void cli_shot_writing(const cli_render_job *job, conic_shot_writing *writing) {
   writing->is_bare = !cli_backdrop_is_studio(job);
   writing->has_legend = job->has_legend;
   writing->has_mattes = job->has_mattes;
+  writing->matte_by = job->matte_by;
 }
 
 static conic_shot_names names_of(const cli_render_job *job) {
@@ -171,6 +172,7 @@ conic_status cli_shot_describe(cli_session *session, cli_render_job *job) {
   file.writing = writing;
   file.writing.compression = CONIC_COMPRESSION_ZIP;
   file.writing.is_half = file.writing.has_mattes = 0;
+  file.writing.matte_by = NULL;
   if (status == CONIC_OK)
     status = conic_shot_file_print(session->context, &file, CONIC_SHOT_IN_PICTURE, &job->making.shown_text);
   return status;

@@ -52,6 +52,7 @@ typedef struct cli_render_job { /* NOLINT(clang-analyzer-optin.performance.Paddi
   int n_outputs;
   char kind[8];                 /* of outputs without an ending, where one says it */
   const char *deep_path;        /* --deep; null: none */
+  const char *matte_by;         /* --matte-by; null: by input */
   const char *overdraw_path;    /* --show overdraw; null: none */
   int is_overdraw_confetti;     /* and overdraw-confetti */
   const char *clusters_path;    /* --show clusters; null: none */

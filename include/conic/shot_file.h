@@ -47,7 +47,8 @@ typedef struct conic_shot_writing {
   int is_half;                   /* of an EXR */
   int is_bare;                   /* files to look at have nothing behind the picture that it has not itself */
   int has_legend, has_mattes;
-  uint64_t reserved[4];
+  const char *matte_by; /* the property of Gaussians whose values have a matte each; null: each input has one */
+  uint64_t reserved[3];
 } conic_shot_writing;
 
 /* All that decides a picture. Who fills one in keeps what it points to. */

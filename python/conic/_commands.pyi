@@ -65,6 +65,7 @@ def render(
     timeout: Optional[float] = None,
     ao: Optional[int] = None,
     shadow: Optional[bool] = None,
+    matte_by: Optional[PathLike] = None,
     transparency: Optional[bool] = None,
     catcher: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
     holdout: Optional[Union[Union[str, float, Sequence[float]], Sequence[Any]]] = None,
@@ -183,6 +184,8 @@ def render(
     ao: light from all around falls only where nothing hides it, as so many directions tell: 64 look smooth,
         1024 are exact
     shadow: the lights cast shadows, but for those at your eye
+    matte_by: of Gaussian scenes, a matte for each value of a property of their .ply, as FILE/VALUE [one for
+        each input]
     transparency: splats let light through as their opacity says, and meshes as the alpha of their materials and
         pictures
     catcher: of an input only the shadows that fall on it: black, and A says how dark

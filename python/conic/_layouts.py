@@ -543,7 +543,8 @@ class ShotWriting(ctypes.Structure):
         ("is_bare", c_int),
         ("has_legend", c_int),
         ("has_mattes", c_int),
-        ("reserved", c_uint64 * 4),
+        ("matte_by", c_char_p),
+        ("reserved", c_uint64 * 3),
     ]
 
 

@@ -174,7 +174,7 @@ class Picture(Dict[str, Any]):
             is_exr = os.fsdecode(path).lower().endswith(".exr")
             writing = dataclasses.replace(self.shot.writing, tone="srgb" if is_exr or self.is_display else tone,
                                           compression="zip", is_half=False, is_bare=not is_exr, has_legend=False,
-                                          has_mattes=False)
+                                          has_mattes=False, matte_by=None)
             image.shot = dataclasses.replace(self.shot, writing=writing).text()
         with context() as (made, check):
             check(library.conic_image_write_as(made, text_bytes(path), ctypes.byref(image), ctypes.byref(options)))

@@ -420,6 +420,7 @@ class Writing(_Struct):
     is_bare: bool = False
     has_legend: bool = False
     has_mattes: bool = False
+    matte_by: Optional[str] = None
 
 
 @dataclass
@@ -625,7 +626,7 @@ class Sketch:
                 part = type(place.contents).from_buffer_copy(place.contents)
                 self._parts.append(part)
                 setattr(self._reading, name, ctypes.pointer(part))
-        for part, names in ((self._reading, ("texture_path", "columns", "where")),
+        for part, names in ((self._reading, ("texture_path", "columns", "where")), (self._writing, ("matte_by",)),
                             *((part, ("by", "ramp")) for part in self._parts if isinstance(part, layouts.Coloring))):
             for name in names:  # likewise
                 setattr(part, name, getattr(part, name))

@@ -60,6 +60,25 @@ run 0 make gaussians -n 300 -o "g.ply"
 gaussians=(g.ply knot.ply mesh.obj --holdout mesh.obj --profile gsplat-1.6 --size 48x40 --as auto)
 run 0 render "${gaussians[@]}" --cryptomatte --samples 2 -o g.exr
 grep -qaE '\{"g":"[0-9a-f]{8}","knot":"cdba143b"\}' g.exr || fail "not the names of Gaussians and surfaces"
+# Labels that a .ply of Gaussians has, as training writes them; other inputs keep their names
+python3 - g.ply << 'END'
+import sys
+head, end, body = open(sys.argv[1], "rb").read().partition(b"end_header\n")
+row = len(body) // 300
+rows = [body[i * row:(i + 1) * row] + bytes([7 * (i % 3)]) for i in range(300)]
+open("labels.ply", "wb").write(head + b"property uchar label\n" + end + b"".join(rows))
+END
+run 0 render labels.ply "${gaussians[@]}" --cryptomatte --matte-by label --samples 2 -o l.exr
+grep -qaE '\{"g":"[0-9a-f]{8}","knot":"cdba143b","labels/0":"[0-9a-f]{8}","labels/7":"[0-9a-f]{8}","labels/14":"' l.exr ||
+  fail "not the names of labels: $(grep -ao '{"[^}]*}' l.exr)"
+run 0 render --again l.exr -o again.exr
+cmp -s l.exr again.exr || fail "drawn again it has other mattes"
+run 2 render "${gaussians[@]}" --matte-by label -o n.exr
+grep -q 'it needs --aov cryptomatte' err || fail "$(cat err)"
+run 3 render "${gaussians[@]}" --cryptomatte --matte-by label -o n.exr
+grep -q 'no scene has the property' err || fail "$(cat err)"
+run 2 render knot.ply $picture --cryptomatte --matte-by label -o n.exr
+
 run 0 render g.ply knot.ply --profile surface --size 48x40 --cryptomatte -o s.exr
 
 # Each frame has its own
@@ -84,6 +103,7 @@ sum_is_alpha t.0002.exr
 sum_is_alpha h.exr
 sum_is_alpha p.exr
 sum_is_alpha g.exr
+sum_is_alpha l.exr
 run 0 render "${inputs[@]}" --size 300x256 --zoom 3 --as auto --samples 16 --cryptomatte -o bands.exr # two bands of samples
 sum_is_alpha bands.exr
 [[ $failures -eq 0 ]]

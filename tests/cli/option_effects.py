@@ -52,6 +52,7 @@ CASES = {
     "--ao": [["--ao", "16"]],
     "--shadow": [["--shadow"]],
     "--transparency": [["--transparency"]],
+    "--matte-by": [["--matte-by", "label", "--aov", "rgba,cryptomatte", "-o", "p.exr"], ["--matte-by", "label"]],
     "--catcher": [["--catcher", "INPUT", "--shadow", "--samples", "1"]],
     "--holdout": [["--holdout", "INPUT", "--samples", "1"]],
     "--place": [["--place", "INPUT=0.8,0,0.6,0,0,1,0,0,-0.6,0,0.8,0"]],

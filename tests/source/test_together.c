@@ -63,6 +63,14 @@ static conic_source *open_scene(conic_context *context, const char *const *names
   return source;
 }
 
+static conic_source *open_both(conic_context *context, const char *const names[2], conic_gaussians *gaussians,
+                               conic_triangles *set) {
+  conic_take_back_loans(context);
+  CHECK_OK(conic_lend(context, names[0], gaussians));
+  CHECK_OK(conic_lend(context, names[1], set));
+  return open_scene(context, names, 2, NULL);
+}
+
 static conic_shot shot_of(conic_gaussian_profile profile) {
   conic_shot shot;
   conic_shot_init(&shot);
@@ -75,12 +83,30 @@ static conic_shot shot_of(conic_gaussian_profile profile) {
   return shot;
 }
 
+static void light_from_beside(conic_shot *shot) {
+  shot->render.shading = CONIC_SHADE_LAMBERT;
+  shot->render.lighting.is_given = shot->render.lighting.n_lights = 1;
+  shot->render.lighting.lights[0] =
+      (conic_light){.frame = CONIC_LIGHT_WORLD, .direction = {-2, 0, -1}, .color = {1, 1, 1}};
+}
+
 static conic_image draw(conic_context *context, conic_source *source, const conic_shot *shot) {
   conic_image image;
   conic_renderer *renderer;
   CHECK_OK(conic_renderer_create(context, &renderer));
   CHECK_OK(conic_image_allocate(context, shot->camera.width, shot->camera.height, shot->planes, &image));
   CHECK_OK(conic_shot_draw(source, renderer, shot, &image, NULL));
+  conic_renderer_destroy(renderer);
+  return image;
+}
+
+static conic_image draw_surfaces(conic_context *context, conic_source *source, const conic_shot *shot, unsigned among) {
+  conic_render_options render = shot->render;
+  conic_image image;
+  conic_renderer *renderer;
+  conic_source_settle(source, &render);
+  CHECK_OK(conic_renderer_create(context, &renderer));
+  CHECK_OK(conic_source_draw_surfaces(source, renderer, &shot->camera, &render, &shot->view, among, &image));
   conic_renderer_destroy(renderer);
   return image;
 }
@@ -159,23 +185,10 @@ static void check_pane(conic_context *context, const char *ball) {
 /* All profiles, and several samples a pixel, as the oracle has them; and the same bits by every instruction set. */
 static void check_oracle(conic_context *context, conic_source *source, conic_gaussian_profile profile, int samples) {
   conic_shot shot = shot_of(profile);
-  conic_image surfaces;
-  conic_renderer *renderer;
   conic_gaussian_judging judging;
   conic_gaussian_verdict verdict;
-  conic_camera fine = shot.camera;
   shot.view.samples = samples;
-  conic_image image = draw(context, source, &shot);
-  fine.width = fine.height = SIDE * samples;
-  fine.cx = fine.cy = 0.5 * fine.width;
-  fine.fx = fine.fy = 40.0 * samples;
-  conic_source_settle(source, &shot.render);
-  CHECK_OK(conic_renderer_create(context, &renderer));
-  CHECK_OK(conic_image_allocate(
-      context, fine.width, fine.height,
-      planes & (1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_NORMAL | 1u << CONIC_PLANE_ID),
-      &surfaces));
-  CHECK_OK(conic_source_draw(conic_source_surfaces(source), renderer, &fine, &shot.render, NULL, &surfaces, NULL));
+  conic_image image = draw(context, source, &shot), surfaces = draw_surfaces(context, source, &shot, planes);
   const conic_gaussians *gaussians = conic_source_gaussians(source);
   const conic_gaussian_surfaces given = {&surfaces, 0, (uint32_t)gaussians->count};
   conic_gaussian_judging_init(&judging);
@@ -205,7 +218,6 @@ static void check_oracle(conic_context *context, conic_source *source, conic_gau
   conic_image_release(context, &alone);
   conic_image_release(context, &image);
   conic_image_release(context, &surfaces);
-  conic_renderer_destroy(renderer);
 }
 
 /* A slope through a row of balls; and leaning discs, one of which comes before a wall behind the centres of others
@@ -221,10 +233,7 @@ static void check_profiles(conic_context *context, const char *const names[2], i
   }
   if (are_leaning)
     row.position[2][8] = 1.95f;
-  conic_take_back_loans(context);
-  CHECK_OK(conic_lend(context, names[0], &row));
-  CHECK_OK(conic_lend(context, names[1], &set));
-  conic_source *source = open_scene(context, names, 2, NULL);
+  conic_source *source = open_both(context, names, &row, &set);
   for (int profile = 0; profile < CONIC_N_GAUSSIAN_PROFILES; profile++)
     if (!are_leaning || profile == CONIC_PROFILE_2DGS_2024)
       check_oracle(context, source, (conic_gaussian_profile)profile, profile == CONIC_PROFILE_EXACT ? 2 : 1);
@@ -289,16 +298,10 @@ static void check_scenes(conic_context *context) {
 static void check_shadow(conic_context *context, const char *const names[2]) {
   conic_gaussians ball = balls(context, 1, 2.0, 0.0, 0.8f);
   conic_triangles set = wall(context, 3.0, 0.0, 0.5f);
-  conic_take_back_loans(context);
   ball.position[0][0] = -2.0f;
-  CHECK_OK(conic_lend(context, names[0], &ball));
-  CHECK_OK(conic_lend(context, names[1], &set));
-  conic_source *source = open_scene(context, names, 2, NULL);
+  conic_source *source = open_both(context, names, &ball, &set);
   conic_shot shot = shot_of(CONIC_PROFILE_EXACT);
-  shot.render.shading = CONIC_SHADE_LAMBERT;
-  shot.render.lighting.is_given = shot.render.lighting.n_lights = 1;
-  shot.render.lighting.lights[0] =
-      (conic_light){.frame = CONIC_LIGHT_WORLD, .direction = {-2, 0, -1}, .color = {1, 1, 1}};
+  light_from_beside(&shot);
   conic_image plain = draw(context, source, &shot);
   shot.light.has_shadows = 1;
   conic_image shadowed = draw(context, source, &shot);
@@ -335,10 +338,7 @@ static void check_motion(conic_context *context, const char *const names[2]) {
   conic_gaussians ball = balls(context, 3, 1.5, 0.5, 0.8f);
   conic_triangles set = wall(context, 3.0, 0.1, 0.5f);
   conic_shot shot = shot_of(CONIC_PROFILE_GSPLAT_1_6);
-  conic_take_back_loans(context);
-  CHECK_OK(conic_lend(context, names[0], &ball));
-  CHECK_OK(conic_lend(context, names[1], &set));
-  conic_source *source = open_scene(context, names, 2, NULL);
+  conic_source *source = open_both(context, names, &ball, &set);
   shot.light.has_shadows = 1;
   conic_image at_rest = draw(context, source, &shot);
   for (size_t i = 0; i < 3; i++) {
@@ -392,16 +392,10 @@ static void check_own_planes(conic_context *context, const char *const names[2])
   /* One ball before a wall, which has the shadow of another one. */
   conic_gaussians pair = balls(context, 2, 2.0, 0.0, 0.8f);
   conic_triangles set = wall(context, 3.0, 0.0, 0.5f);
-  conic_take_back_loans(context);
   pair.position[0][0] = -2.0f;
-  CHECK_OK(conic_lend(context, names[0], &pair));
-  CHECK_OK(conic_lend(context, names[1], &set));
-  conic_source *source = open_scene(context, names, 2, NULL);
+  conic_source *source = open_both(context, names, &pair, &set);
   conic_shot shot = shot_of(CONIC_PROFILE_EXACT);
-  shot.render.shading = CONIC_SHADE_LAMBERT;
-  shot.render.lighting.is_given = shot.render.lighting.n_lights = 1;
-  shot.render.lighting.lights[0] =
-      (conic_light){.frame = CONIC_LIGHT_WORLD, .direction = {-2, 0, -1}, .color = {1, 1, 1}};
+  light_from_beside(&shot);
   shot.light.has_shadows = 1;
   shot.light.n_directions = 4;
   shot.planes = CONIC_SURFACES_PLANES | 1u << CONIC_PLANE_TRANSPARENCY;
@@ -435,23 +429,16 @@ static void check_doubt(conic_context *context, const char *const names[2]) {
   conic_gaussians ball = balls(context, 1, 2.0, 0.0, 0.8f);
   for (size_t k = 0; k < 2; k++) {
     conic_triangles set = wall(context, wall_z[k], 0.0, 0.5f);
-    conic_take_back_loans(context);
-    CHECK_OK(conic_lend(context, names[0], &ball));
-    CHECK_OK(conic_lend(context, names[1], &set));
-    conic_source *source = open_scene(context, names, 2, NULL);
+    conic_source *source = open_both(context, names, &ball, &set);
     conic_shot shot = shot_of(CONIC_PROFILE_EXACT);
     shot.planes = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_DOUBT;
     conic_image image = draw(context, source, &shot);
     CHECK((((const uint32_t *)image.planes[CONIC_PLANE_DOUBT])[MIDDLE] > 0) == (k == 0));
     static double alpha[PIXELS];
-    conic_renderer *renderer;
-    conic_image surfaces;
     conic_gradient_options how;
     conic_gaussian_gradient g;
     alpha[MIDDLE] = 1.0;
-    conic_source_settle(source, &shot.render);
-    CHECK_OK(conic_renderer_create(context, &renderer));
-    CHECK_OK(conic_source_draw_surfaces(source, renderer, &shot.camera, &shot.render, &shot.view, 0, &surfaces));
+    conic_image surfaces = draw_surfaces(context, source, &shot, 0);
     conic_gradient_options_init(&how);
     how.surfaces = &(conic_gaussian_surfaces){.image = &surfaces};
     const conic_gaussian_weights weights = {.width = SIDE, .height = SIDE, .alpha = alpha};
@@ -459,7 +446,6 @@ static void check_doubt(conic_context *context, const char *const names[2]) {
     CHECK((g.doubtful[CONIC_DOUBT_SURFACE] > 0) == (k == 0) && g.loss == 1.0);
     conic_gaussian_gradient_release(context, &g);
     conic_image_release(context, &surfaces);
-    conic_renderer_destroy(renderer);
     conic_image_release(context, &image);
     conic_source_close(source);
     conic_triangles_release(context, &set);
@@ -486,15 +472,10 @@ static void check_gradient(conic_context *context, const char *const names[2], c
   static double weights[5 * PIXELS], rgb[3 * PIXELS], alpha[PIXELS], z[PIXELS];
   conic_gaussians row = balls(context, 7, 1.2, 0.3, 0.6f);
   conic_triangles set = wall(context, 2.0, 0.4, 0.5f);
-  conic_take_back_loans(context);
   for (size_t i = 0; i < 2; i++) /* where there is no wall */
     set.position[1][i] = 0.1f;
-  CHECK_OK(conic_lend(context, names[0], &row));
-  CHECK_OK(conic_lend(context, names[1], &set));
-  conic_source *source = open_scene(context, names, 2, NULL);
+  conic_source *source = open_both(context, names, &row, &set);
   conic_shot shot = shot_of(profile);
-  conic_renderer *renderer;
-  conic_image surfaces;
   for (size_t i = 0; i < PIXELS; i++) {
     for (size_t c = 0; c < 5; c++)
       weights[5 * i + c] = (double)(i * (7 + 4 * c) % 11) / 11.0 - 0.3;
@@ -502,9 +483,7 @@ static void check_gradient(conic_context *context, const char *const names[2], c
     alpha[i] = weights[5 * i + 3];
     z[i] = weights[5 * i + 4];
   }
-  conic_source_settle(source, &shot.render);
-  CHECK_OK(conic_renderer_create(context, &renderer));
-  CHECK_OK(conic_source_draw_surfaces(source, renderer, &shot.camera, &shot.render, &shot.view, 0, &surfaces));
+  conic_image surfaces = draw_surfaces(context, source, &shot, 0);
   const conic_gaussian_surfaces given = {&surfaces, 0, 7};
   const conic_gaussian_weights w = {.width = SIDE, .height = SIDE, .rgb = rgb, .alpha = alpha, .z = z};
   conic_gradient_options how;
@@ -534,7 +513,6 @@ static void check_gradient(conic_context *context, const char *const names[2], c
   CHECK(conic_gaussian_gradient_find(context, &row, &shot.camera, &shot.gaussians, &w, &how, &g) ==
         CONIC_ERROR_ARGUMENT);
   conic_image_release(context, &surfaces);
-  conic_renderer_destroy(renderer);
   conic_source_close(source);
   conic_triangles_release(context, &set);
   conic_gaussians_release(context, &row);
@@ -544,10 +522,7 @@ static void check_gradient(conic_context *context, const char *const names[2], c
 static void check_windows(conic_context *context, const char *const names[2]) {
   conic_gaussians row = balls(context, 7, 1.2, 0.3, 0.6f);
   conic_triangles set = wall(context, 2.0, 0.4, 0.5f);
-  conic_take_back_loans(context);
-  CHECK_OK(conic_lend(context, names[0], &row));
-  CHECK_OK(conic_lend(context, names[1], &set));
-  conic_source *source = open_scene(context, names, 2, NULL);
+  conic_source *source = open_both(context, names, &row, &set);
   conic_shot shot = shot_of(CONIC_PROFILE_INRIA_2023);
   conic_renderer *renderer;
   shot.camera.width = 200;
