@@ -207,7 +207,7 @@ static conic_status take_tree(tree_reader *reader, const xmlDoc *document) {
   for (const xmlNode *node = scans ? scans->children : NULL; node && status == CONIC_OK; node = node->next)
     if (is_element(node, "vectorChild"))
       status = take_scan(reader, node);
-  for (size_t i = 0; i < reader->tree->n_scans; i++)
+  for (size_t i = 0; reader->tree->columns && i < reader->tree->n_scans; i++)
     reader->tree->scans[i].columns = reader->tree->columns + reader->tree->scans[i].first_column;
   return status;
 }

@@ -111,6 +111,7 @@ static void test_wrong(void) {
   file.n_bytes -= E57_PAGE;
   files_check_failed("cut", read_bytes(&file, NULL, &model), "a part of it is missing", (const char *)NULL);
   check_wrong("recordCount=\"5\"", "recordCount=\"6\"", "a packet is too short");
+  check_wrong("recordCount=\"5\"", "rehordCount=\"5\"", "the XML: it does not say where the points of a scan are");
   check_wrong("</e57Root>", "</e57root>", "the XML: it is damaged");
   check_wrong("<e57Root", "<E57Root", "the XML");
   check_wrong("maximum=\"4095\"", "maximum=\"-095\"", "the limits of a value");
