@@ -49,7 +49,7 @@ static double row_sum_of_squares(const color_work *work, const channel_work *buf
 }
 
 static size_t padded_width(const color_work *work) {
-  return work->width + 2 * RADIUS;
+  return work->width + (size_t)2 * RADIUS;
 }
 
 static void find_moments(const color_work *work, const channel_work *buffers) {
