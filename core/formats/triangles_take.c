@@ -38,7 +38,8 @@ static void take_arrays(conic_model *model, conic_triangles *triangles) {
 
 /* Splits an array of n vectors into arrays of one component, with one more, `none`, for corners without the
  * attribute. */
-static conic_status split(conic_context *context, const float *values, size_t n, int n_components, float **arrays) {
+static conic_status split(conic_context *context, const void *rows, size_t n, int n_components, float **arrays) {
+  const float *values = rows; /* null: corners name what is not there */
   for (int c = 0; c < n_components; c++) {
     arrays[c] = conic_memory_allocate(context, n + 1, sizeof(float));
     if (!arrays[c])
@@ -77,7 +78,7 @@ static conic_status take_normals(conic_context *context, conic_faces *faces, con
   triangles->normal_corners = faces->normal_corners;
   faces->normal_corners = NULL;
   name_none(triangles->normal_corners, triangles->count, faces->n_normals);
-  return split(context, faces->normals[0], faces->n_normals, 3, triangles->normal);
+  return split(context, faces->normals, faces->n_normals, 3, triangles->normal);
 }
 
 static conic_status take_coordinates(conic_context *context, conic_faces *faces, conic_triangles *triangles) {
@@ -94,7 +95,7 @@ static conic_status take_coordinates(conic_context *context, conic_faces *faces,
   if (faces->has_vertex_coordinates)
     name_vertices(triangles->texture_corners, triangles, faces->first_vertex_coordinate);
   name_none(triangles->texture_corners, triangles->count, faces->n_coordinates);
-  return split(context, faces->coordinates[0], faces->n_coordinates, 2, triangles->texture_coordinate);
+  return split(context, faces->coordinates, faces->n_coordinates, 2, triangles->texture_coordinate);
 }
 
 static conic_status allocate_materials(conic_context *context, size_t n, conic_triangles *triangles) {

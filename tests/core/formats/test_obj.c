@@ -148,6 +148,15 @@ static void test_odd(void) {
   free(text);
 }
 
+/* Corners that name coordinates and normals of which there are none do without. */
+static void test_nothing_to_name(void) {
+  conic_triangles triangles;
+  const char *path = files_write("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1/1/1 2/9/9 3/1/1\n");
+  CHECK_OK(conic_triangles_read(context, path, &triangles));
+  CHECK(triangles.count == 1 && unlink(path) == 0);
+  conic_triangles_release(context, &triangles);
+}
+
 static void test_real(const char *source_folder) {
   static const struct {
     const char *name;
@@ -173,6 +182,7 @@ int main(int argc, char **argv) {
   test_content_tells();
   test_failures();
   test_odd();
+  test_nothing_to_name();
   test_real(argc > 1 ? argv[1] : ".");
   files_end(context);
   return check_result();
