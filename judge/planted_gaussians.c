@@ -420,7 +420,7 @@ conic_status conic_planted_gaussians_draw(conic_context *context, const conic_ga
   planted_job j = {.context = context, .set = gaussians, .planted = planted, .at = at, .values = values};
   j.frame = (conic_planted_frame){.planted = planted, .samples = samples};
   look(&j, is_affine);
-  conic_status status = is_affine ? CONIC_OK : conic_view_rays_make(context, camera, &j.rays);
+  conic_status status = is_affine ? CONIC_OK : conic_view_rays_make(context, camera, &planted->rules, &j.rays);
   if (status == CONIC_OK)
     status = make_sample_grid(&j);
   if (status == CONIC_OK)

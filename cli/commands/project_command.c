@@ -4,7 +4,6 @@
 #include "cli/commands/gaussian_commands.h"
 #include "cli/outputs.h"
 #include "core/files/disk.h"
-#include "core/image/view_arguments.h"
 
 typedef struct project_job {
   cli_render_job scene;
@@ -37,8 +36,6 @@ static conic_status project_scene(cli_session *session, project_job *job) {
   conic_float_model model;
   conic_status status = cli_gaussians_begin(session, &job->scene, job->floats, &options, &model);
   const double start = cli_seconds();
-  if (status == CONIC_OK)
-    status = conic_view_pinhole_check(session->context, "project", &job->scene.shot.camera);
   if (status == CONIC_OK)
     status = conic_gaussian_intermediates_find(session->context, conic_source_gaussians(job->scene.source),
                                                &job->scene.shot.camera, &options, &model, &job->found);

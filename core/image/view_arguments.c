@@ -74,6 +74,28 @@ conic_status conic_view_ray_check(conic_context *context, const char *who, const
   return status;
 }
 
+/* Of gsplat: pinholes with a lens of OpenCV, and fisheyes with its four numbers. */
+static int is_of_gsplat(const conic_camera *c) {
+  const int is_radial = c->lens == CONIC_LENS_NONE || c->lens == CONIC_LENS_RADIAL;
+  return c->kind == CONIC_CAMERA_FISHEYE ? is_radial
+                                         : c->kind == CONIC_CAMERA_PERSPECTIVE &&
+                                               (c->lens == CONIC_LENS_OPENCV || (is_radial && c->distortion[3] == 0.0));
+}
+
+conic_status conic_view_profile_check(conic_context *context, const char *who, const conic_profile_row *rules,
+                                      const conic_camera *camera) {
+  if (rules->shape != CONIC_SHAPE_SOLID)
+    return (rules->shape == CONIC_SHAPE_RAY ? conic_view_ray_check : conic_view_pinhole_check)(context, who, camera);
+  conic_status status = conic_view_camera_check(context, who, camera);
+  if (status != CONIC_OK || is_of_gsplat(camera))
+    return status;
+  return conic_fail(context, CONIC_ERROR_ARGUMENT,
+                    "%s: %s takes pinholes, without a lens or with k1 to k6, p1 and p2 of OpenCV, and fisheyes with k1 "
+                    "to k4; this camera is %s, its lens %s",
+                    who, rules->name, conic_camera_kind_name((conic_camera_kind)camera->kind),
+                    conic_lens_name((conic_lens)camera->lens));
+}
+
 conic_status conic_view_arguments_take(conic_context *context, const char *who, const conic_camera *camera,
                                        const conic_render_options *options, conic_render_options *own) {
   conic_render_options_init(own);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "conic/render.h"
+#include "core/splats/gaussian_profile.h"
 
 /* Why a matrix is not a rotation and a translation; null if it is. */
 const char *conic_rotation_fault(const double rows[3][4]);
@@ -19,6 +20,10 @@ conic_status conic_view_pinhole_check(conic_context *context, const char *who, c
 
 /* conic_view_camera_check, and that a ray goes through its pixels (core/image/camera_rays.h). */
 conic_status conic_view_ray_check(conic_context *context, const char *who, const conic_camera *camera);
+
+/* conic_view_camera_check, and that the profile draws Gaussians by such a camera. */
+conic_status conic_view_profile_check(conic_context *context, const char *who, const conic_profile_row *rules,
+                                      const conic_camera *camera);
 
 /* Copies the caller's options (conic_options_take) to `own`. Errors: ARGUMENT: one is null, the options were not
  * initialised, or nobody can look through the camera. */

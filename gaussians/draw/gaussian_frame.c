@@ -194,7 +194,7 @@ static void composite_tile(void *data, size_t i_tile, int i_thread) {
 static conic_status make_rooms(frame *f) {
   const size_t threads = (size_t)conic_context_threads(f->context);
   size_t longest = 0;
-  if (f->view.rules->shape != CONIC_SHAPE_RAY)
+  if (f->view.rules->shape != CONIC_SHAPE_RAY && f->shape != CONIC_SHAPE_SIGHT)
     return CONIC_OK;
   for (size_t tile = 0; tile < f->bins.n_tiles; tile++) {
     size_t n = f->bins.tile_begin[tile + 1] - f->bins.tile_begin[tile];
@@ -330,7 +330,7 @@ static conic_status check_sight(conic_context *context, const conic_camera *came
                                 const conic_gaussian_options *options) {
   int takes_all = options->profile == CONIC_PROFILE_EXACT;
   double h = options->prefilter;
-  conic_status status = (takes_all ? conic_view_ray_check : conic_view_pinhole_check)(context, "gaussians", camera);
+  conic_status status = conic_view_profile_check(context, "gaussians", conic_profile_row_of(options->profile), camera);
   if (status == CONIC_OK && (!(h >= 0.0 && h <= 1e4) || (h > 0.0 && !takes_all)))
     return conic_fail(context, CONIC_ERROR_ARGUMENT,
                       "gaussians: the prefilter is out of range (0 to 10000), or of another profile than exact, which "
@@ -347,7 +347,8 @@ static conic_status check_sight(conic_context *context, const conic_camera *came
 
 static conic_status set_up_scene(frame *f) {
   double begin = conic_seconds_now();
-  conic_status status = f->view.rays ? conic_view_rays_make(f->context, f->view.camera, &f->view_rays) : CONIC_OK;
+  conic_status status =
+      f->view.rays ? conic_view_rays_make(f->context, f->view.camera, f->view.rules, &f->view_rays) : CONIC_OK;
   if (status == CONIC_OK)
     status = set_up_all(f);
   f->statistics.seconds_setup = conic_seconds_now() - begin;

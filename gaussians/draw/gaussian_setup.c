@@ -360,10 +360,11 @@ static int find_sigma_points(const conic_gaussian_view *view, const conic_gaussi
     double at[3];
     for (int row = 0; row < 3; row++)
       at[row] = p->mean[row] + along * p->unit[axis_of][row];
-    int is_in = at[2] > 0.0;
+    int is_in = view->rays ? conic_view_lens_show(&view->rays->lens, at, points[i]) : at[2] > 0.0;
     for (int axis = 0; axis < 2; axis++) {
       const double margin = view->rules->unscented_share * size[axis];
-      points[i][axis] = at[2] > 0.0 ? focal[axis] * (at[axis] / at[2]) + view->center_px[axis] : 0.0;
+      if (!view->rays)
+        points[i][axis] = at[2] > 0.0 ? focal[axis] * (at[axis] / at[2]) + view->center_px[axis] : 0.0;
       is_in &= points[i][axis] >= -margin && points[i][axis] < size[axis] + margin;
     }
     is_seen |= is_in;
@@ -410,24 +411,6 @@ static int find_unscented_box(const conic_gaussian_view *view, const conic_gauss
   return is_number(place[0]) && is_number(place[1]) && find_unscented_size(rules, v, p->opacity, half);
 }
 
-static conic_gaussian_fate set_up_solid(const conic_gaussian_view *view, conic_gaussian_placed *p,
-                                        conic_gaussian_footprint *f, conic_gaussian_ray *ray) {
-  double least[2], most[2], unit_of, place[2], half[2], reach = reach_of(view->rules, p->opacity);
-  for (int k = 0; k < 3; k++)
-    if (!(p->scale[k] > 0x1p-23))
-      return CONIC_GAUSSIAN_CULLED;
-  if (!(reach > 0.0) || !conic_gaussian_project(view, p, reach, least, most))
-    return CONIC_GAUSSIAN_CULLED;
-  if (!find_unscented_box(view, p, place, half) ||
-      (view->rules->coverage == CONIC_COVERAGE_BOX && !cover_box(view, place, half, least, most)) ||
-      !conic_gaussian_limit_box(view, least, most, f))
-    return CONIC_GAUSSIAN_CULLED;
-  take_mean(view, p, f);
-  return find_ray(view, p, f, ray, NULL, &unit_of) && find_ray_outline(view, p, reach, ray, unit_of, f)
-             ? CONIC_GAUSSIAN_DRAWN
-             : CONIC_GAUSSIAN_CULLED;
-}
-
 /* g and c about a direction, and their derivatives by directions; e of these. */
 static int find_sight(const conic_gaussian_view *view, const conic_gaussian_placed *p, conic_gaussian_sight *sight) {
   double directions[4][3] = {{0.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
@@ -460,18 +443,45 @@ static int find_sight(const conic_gaussian_view *view, const conic_gaussian_plac
   return is_number((double)(sight->c[0][1] + sight->c[1][2] + sight->c[2][3] + sight->e[0]));
 }
 
-static conic_gaussian_fate set_up_sight(const conic_gaussian_view *view, const conic_gaussian_placed *p,
-                                        conic_gaussian_footprint *f, conic_gaussian_sight *sight) {
-  double reach = reach_of(view->rules, p->opacity), longest = 0.0;
-  for (int k = 0; k < 3; k++)
-    longest = p->scale[k] > longest ? p->scale[k] : longest;
-  if (!(reach > 0.0) || !conic_view_rays_box(view->rays, p->mean, sqrt(reach) * longest, f->box))
-    return CONIC_GAUSSIAN_CULLED;
+static conic_gaussian_fate aim_sight(const conic_gaussian_view *view, const conic_gaussian_placed *p,
+                                     conic_gaussian_footprint *f, conic_gaussian_sight *sight) {
   f->x = f->box[0][0];
   f->y = f->box[0][1];
   f->dx = f->dy = 0.0f;
   f->half_reach = INFINITY;
   return find_sight(view, p, sight) ? CONIC_GAUSSIAN_DRAWN : CONIC_GAUSSIAN_CULLED;
+}
+
+static conic_gaussian_fate set_up_sight(const conic_gaussian_view *view, const conic_gaussian_placed *p,
+                                        conic_gaussian_footprint *f, conic_gaussian_sight *sight) {
+  double reach = reach_of(view->rules, p->opacity), longest = 0.0;
+  for (int k = 0; k < 3; k++)
+    longest = p->scale[k] > longest ? p->scale[k] : longest;
+  return reach > 0.0 && conic_view_rays_box(view->rays, p->mean, sqrt(reach) * longest, f->box)
+             ? aim_sight(view, p, f, sight)
+             : CONIC_GAUSSIAN_CULLED;
+}
+
+static conic_gaussian_fate set_up_solid(const conic_gaussian_view *view, conic_gaussian_placed *p,
+                                        conic_gaussian_footprint *f, conic_gaussian_ray *ray,
+                                        conic_gaussian_sight *sight) {
+  const double reach = reach_of(view->rules, p->opacity);
+  double least[2] = {0.0, 0.0}, most[2] = {view->camera->width, view->camera->height}, unit_of, place[2], half[2];
+  for (int k = 0; k < 3; k++)
+    if (!(p->scale[k] > 0x1p-23))
+      return CONIC_GAUSSIAN_CULLED;
+  if (!(reach > 0.0) || (!view->rays && !conic_gaussian_project(view, p, reach, least, most)))
+    return CONIC_GAUSSIAN_CULLED;
+  if (!find_unscented_box(view, p, place, half) ||
+      (view->rules->coverage == CONIC_COVERAGE_BOX && !cover_box(view, place, half, least, most)) ||
+      !conic_gaussian_limit_box(view, least, most, f))
+    return CONIC_GAUSSIAN_CULLED;
+  if (view->rays)
+    return aim_sight(view, p, f, sight);
+  take_mean(view, p, f);
+  return find_ray(view, p, f, ray, NULL, &unit_of) && find_ray_outline(view, p, reach, ray, unit_of, f)
+             ? CONIC_GAUSSIAN_DRAWN
+             : CONIC_GAUSSIAN_CULLED;
 }
 
 /* The centre of the box of the outline at the profile's cutoff, and half the box's size. */
@@ -558,14 +568,14 @@ conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const
   if (p.is_flat)
     p.scale[2] = 0.0;
   f->form[0] = f->form[1] = f->form[2] = f->z = 0.0f;
-  conic_gaussian_fate fate = view->rays                            ? set_up_sight(view, &p, f, sight)
+  conic_gaussian_fate fate = rules->shape == CONIC_SHAPE_SOLID     ? set_up_solid(view, &p, f, ray, sight)
+                             : view->rays                          ? set_up_sight(view, &p, f, sight)
                              : rules->shape == CONIC_SHAPE_ELLIPSE ? set_up_ellipse(view, &p, f)
                              : rules->shape == CONIC_SHAPE_RAY     ? set_up_ray(view, &p, f, ray, filter)
-                             : rules->shape == CONIC_SHAPE_SOLID   ? set_up_solid(view, &p, f, ray)
                                                                    : set_up_disc(view, &p, f, ray);
   if (fate != CONIC_GAUSSIAN_DRAWN)
     return fate;
-  int is_by_distance = view->rays && view->camera->kind != CONIC_CAMERA_PERSPECTIVE;
+  int is_by_distance = view->rays && view->camera->kind != CONIC_CAMERA_PERSPECTIVE && rules->shape == CONIC_SHAPE_RAY;
   f->opacity = (float)p.opacity;
   if (rules->shape != CONIC_SHAPE_RAY)
     f->z = (float)z;

@@ -148,6 +148,11 @@ static void composite_discs(const conic_gaussian_list *list, conic_gaussian_tile
 #ifndef CONIC_ON_DEVICE
 #include "gaussians/draw/ray_meetings.h"
 
+/* Solids come in the order of their means, at their depths. */
+static float z_of_meeting(const conic_gaussian_list *list, uint32_t i_footprint, float z) {
+  return list->rules->shape == CONIC_SHAPE_SOLID ? list->footprints[i_footprint].z : z;
+}
+
 static void composite_meetings(const conic_gaussian_list *list, conic_gaussian_tile *tile, int is_filtered) {
   conic_ray_hit *hits = list->room;
   for (size_t at = 0; at < CONIC_GAUSSIAN_TILE_PIXELS; at++) {
@@ -161,7 +166,7 @@ static void composite_meetings(const conic_gaussian_list *list, conic_gaussian_t
       float alpha = m.opacity * conic_exp_negative(-m.half_q);
       alpha = alpha < list->rules->alpha_most ? alpha : list->rules->alpha_most;
       if (m.z > 0.0f && m.half_q >= 0.0f && alpha >= list->rules->alpha_least)
-        hits[n++] = (conic_ray_hit){m.z, alpha, list->entries[i]};
+        hits[n++] = (conic_ray_hit){z_of_meeting(list, list->entries[i], m.z), alpha, list->entries[i]};
     }
     conic_sort_hits(hits, n);
     for (size_t i = 0; i < n && composite_one(list, hits[i].which, hits[i].z, hits[i].alpha, tile, at); i++)

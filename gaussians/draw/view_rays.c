@@ -13,6 +13,7 @@ static const double greatest_reference_slope = 1000.0;
 typedef struct ray_job {
   conic_camera_rays camera_rays;
   conic_view_rays *rays;
+  int is_solid;
 } ray_job;
 
 /* The cone about the sum of the directions, all of unit length. */
@@ -33,18 +34,23 @@ static void enclose(const double (*directions)[3], size_t n, conic_view_cone *co
   cone->sine = sqrt(1.0 - cone->cosine * cone->cosine);
 }
 
+static int find_ray(const ray_job *j, int column, int row, double direction[3]) {
+  double origin[3];
+  return j->is_solid ? conic_view_lens_ray(&j->rays->lens, column + 0.5, row + 0.5, direction)
+                     : conic_camera_ray(&j->camera_rays, column + 0.5, row + 0.5, origin, direction);
+}
+
 static void find_tile_rays(void *data, size_t i_tile) {
   ray_job *j = data;
   conic_sight_rays *to = &j->rays->tiles[i_tile];
   const conic_camera *camera = j->rays->camera;
   int x = (int)(i_tile % (size_t)j->rays->n_tiles[0]) * CONIC_GAUSSIAN_TILE;
   int y = (int)(i_tile / (size_t)j->rays->n_tiles[0]) * CONIC_GAUSSIAN_TILE;
-  double directions[CONIC_GAUSSIAN_TILE_PIXELS][3], origin[3], direction[3];
+  double directions[CONIC_GAUSSIAN_TILE_PIXELS][3], direction[3];
   size_t n = 0;
   for (size_t at = 0; at < CONIC_GAUSSIAN_TILE_PIXELS; at++) {
     int column = x + conic_gaussian_column(at), row = y + conic_gaussian_row(at);
-    int is_there = column < camera->width && row < camera->height &&
-                   conic_camera_ray(&j->camera_rays, column + 0.5, row + 0.5, origin, direction);
+    int is_there = column < camera->width && row < camera->height && find_ray(j, column, row, direction);
     for (int axis = 0; axis < 3; axis++) {
       to->high[axis][at] = is_there ? (float)direction[axis] : NAN;
       to->low[axis][at] = is_there ? (float)(direction[axis] - (double)to->high[axis][at]) : NAN;
@@ -83,8 +89,9 @@ static void find_block_cones(conic_view_rays *rays) {
   }
 }
 
-conic_status conic_view_rays_make(conic_context *context, const conic_camera *camera, conic_view_rays *rays) {
-  ray_job j = {.rays = rays};
+conic_status conic_view_rays_make(conic_context *context, const conic_camera *camera, const conic_profile_row *rules,
+                                  conic_view_rays *rays) {
+  ray_job j = {.rays = rays, .is_solid = rules->shape == CONIC_SHAPE_SOLID};
   const int size[2] = {camera->width, camera->height};
   rays->camera = camera;
   for (int axis = 0; axis < 2; axis++) {
@@ -97,6 +104,8 @@ conic_status conic_view_rays_make(conic_context *context, const conic_camera *ca
       CONIC_OK)
     return CONIC_ERROR_MEMORY;
   conic_camera_rays_init(camera, &j.camera_rays);
+  if (j.is_solid)
+    conic_view_lens_init(camera, &rays->lens);
   conic_parallel_for(context, n, find_tile_rays, &j);
   find_block_cones(rays);
   return CONIC_OK;

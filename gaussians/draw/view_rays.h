@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gaussians/draw/gaussian_tile.h"
+#include "gaussians/draw/view_lens.h"
 
 /* Directions within an angle of the axis; none where is_empty. */
 typedef struct conic_view_cone {
@@ -11,6 +12,7 @@ typedef struct conic_view_cone {
 
 struct conic_view_rays {
   const conic_camera *camera;
+  conic_view_lens lens; /* of CONIC_SHAPE_SOLID */
   int n_tiles[2], n_blocks[2];
   conic_sight_rays *tiles;         /* by tile */
   conic_view_cone *cones, *blocks; /* of tiles, and of CONIC_RAY_BLOCK × CONIC_RAY_BLOCK of them */
@@ -19,7 +21,8 @@ struct conic_view_rays {
 enum { CONIC_RAY_BLOCK = 8 };
 
 /* On failure *rays is to be released, too. Errors: MEMORY. */
-conic_status conic_view_rays_make(conic_context *context, const conic_camera *camera, conic_view_rays *rays);
+conic_status conic_view_rays_make(conic_context *context, const conic_camera *camera, const conic_profile_row *rules,
+                                  conic_view_rays *rays);
 void conic_view_rays_release(conic_context *context, conic_view_rays *rays);
 
 /* The box of the tiles in which a ray may meet the ball, as pixels, first and last in x and y. Returns 0: none may. */

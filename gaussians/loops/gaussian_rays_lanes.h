@@ -117,11 +117,13 @@ CONIC_INLINE void meet_listed(const scene *s, meetings *m, size_t first, const u
                          lanes_at_least(met.half_q, lanes_of(0.0f)) & lanes_at_least(alpha, s->least);
     if (!lanes_any(covered))
       continue;
-    lanes_store(m->z[m->n], met.z);
+    const int is_solid = shape == CONIC_SHAPE_SIGHT && list->rules->shape == CONIC_SHAPE_SOLID;
+    const lanes z = is_solid ? lanes_of(r->z) : met.z;
+    lanes_store(m->z[m->n], z);
     lanes_store(m->alpha[m->n], lanes_keep(covered, alpha));
     m->looks[m->n++] = (look){{r->color[0], r->color[1], r->color[2]}, footprint};
-    m->nearest = lanes_select(covered, lanes_min(met.z, m->nearest), m->nearest);
-    m->farthest = lanes_max(lanes_keep(covered, met.z), m->farthest);
+    m->nearest = lanes_select(covered, lanes_min(z, m->nearest), m->nearest);
+    m->farthest = lanes_max(lanes_keep(covered, z), m->farthest);
   }
 }
 

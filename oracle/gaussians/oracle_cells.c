@@ -176,6 +176,8 @@ static size_t gather_meetings(const oracle_bound_request *b, cell_worker *w, siz
   const int is_sorted = b->doubting.view->rules->shape != CONIC_SHAPE_RAY;
   double T = 1.0, latest = -INFINITY;
   size_t n_meetings = 0;
+  oracle_sight sight;
+  conic_oracle_sight_of(&b->doubting, x, y, &sight);
   for (size_t i = 0; i < n; i++) {
     oracle_uncertain *g = &w->gaussians[w->order[i] - w->gaussians];
     oracle_meeting *m = &w->meetings[n_meetings];
@@ -183,7 +185,7 @@ static size_t gather_meetings(const oracle_bound_request *b, cell_worker *w, siz
       break; /* behind the end */
     if (!may_reach(g, x, y))
       continue;
-    conic_oracle_uncertain_meet(&b->doubting, g, x, y, m);
+    conic_oracle_uncertain_meet(&b->doubting, g, &sight, x, y, m);
     char *color = &w->has_color[g - w->gaussians];
     if (m->may_cover && !*color)
       *color = conic_oracle_uncertain_color(&b->doubting, g) ? 1 : 2;
@@ -313,6 +315,8 @@ conic_status conic_oracle_meet_all(const oracle_bound_request *b, double x, doub
   size_t room = 0, n_here = 0;
   conic_status status = CONIC_OK;
   *gaussians = NULL;
+  oracle_sight sight;
+  conic_oracle_sight_of(&b->doubting, x, y, &sight);
   for (size_t i = 0; i < b->doubting.set->count && status == CONIC_OK; i++) {
     oracle_uncertain g;
     if (i % 65536 == 0)
@@ -324,7 +328,7 @@ conic_status conic_oracle_meet_all(const oracle_bound_request *b, double x, doub
   }
   *meetings = status == CONIC_OK ? conic_memory_allocate(b->context, n_here, sizeof **meetings) : NULL;
   for (size_t i = 0; i < n_here && *meetings; i++)
-    conic_oracle_uncertain_meet(&b->doubting, &(*gaussians)[i], x, y, &(*meetings)[i]);
+    conic_oracle_uncertain_meet(&b->doubting, &(*gaussians)[i], &sight, x, y, &(*meetings)[i]);
   if (*meetings)
     qsort(*meetings, n_here, sizeof **meetings, compare_meetings);
   *n = n_here;

@@ -284,10 +284,9 @@ void conic_oracle_gaussian_place(const oracle_gaussian_view *view, const conic_g
     return;
   pick_normal(view, world, g);
   color_towards_eye(view, set, mean, i, g);
-  g->key = (float)(rules->orders_by_distance || view->camera->kind == CONIC_CAMERA_FISHEYE ||
-                           view->camera->kind == CONIC_CAMERA_EQUIRECTANGULAR
-                       ? oracle_length(g->mean)
-                       : g->mean[2]);
+  const int is_round = view->camera->kind == CONIC_CAMERA_FISHEYE || view->camera->kind == CONIC_CAMERA_EQUIRECTANGULAR;
+  g->key = (float)(rules->orders_by_distance || (is_round && rules->shape == CONIC_SHAPE_RAY) ? oracle_length(g->mean)
+                                                                                              : g->mean[2]);
   g->is_drawn = oracle_is_finite(g->color[0] + g->color[1] + g->color[2]);
   if (rules->shape == CONIC_SHAPE_ELLIPSE)
     g->is_drawn &= place_ellipse(view, g);

@@ -15,6 +15,7 @@ typedef struct oracle_gaussian_view {
   double eye[3];       /* from which colours are seen */
   double center_px[2]; /* the principal point, as the profile has it */
   double prefilter;    /* px²; of CONIC_SHAPE_RAY */
+  double most_angle;   /* of CONIC_SHAPE_SOLID by a fisheye: nothing is seen from it on */
   oracle_ray *rays;    /* of the pixels' centres, where it takes long to find them; else null */
 } oracle_gaussian_view;
 
@@ -61,7 +62,7 @@ int conic_oracle_gaussian_along(const oracle_gaussian_view *view, const oracle_g
 int conic_oracle_pixel_ray(const conic_camera *camera, double x, double y, double origin[3], double direction[3]);
 
 /* Those of a row's pixels. */
-void conic_oracle_ray_row(const conic_camera *camera, size_t row, oracle_ray *rays);
+void conic_oracle_ray_row(const oracle_gaussian_view *view, size_t row, oracle_ray *rays);
 
 /* The same under the filter: the filtered q, and by which share of itself the opacity remains. */
 int conic_oracle_gaussian_filtered(const oracle_gaussian_view *view, const oracle_gaussian *g, double x, double y,

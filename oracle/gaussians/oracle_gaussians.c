@@ -2,6 +2,7 @@
 
 #include "core/image/view_arguments.h"
 #include "oracle/gaussians/oracle_gaussian.h"
+#include "oracle/gaussians/oracle_lens.h"
 #include "oracle/oracle_math.h"
 
 /* --- emission and absorption along a pixel's ray: docs/reference/gaussians.md, Truth --- */
@@ -252,7 +253,7 @@ static void draw_row_again(void *data, size_t row, int i_thread) {
 
 static void find_rays_of_row(void *data, size_t row) {
   const job *j = data;
-  conic_oracle_ray_row(j->view.camera, row, j->view.rays + row * (size_t)j->view.camera->width);
+  conic_oracle_ray_row(&j->view, row, j->view.rays + row * (size_t)j->view.camera->width);
 }
 
 static conic_status allocate_job(job *j, int width, int height) {
@@ -295,6 +296,7 @@ void conic_oracle_gaussian_look(const conic_camera *camera, conic_gaussian_profi
                                 oracle_gaussian_view *view) {
   view->camera = camera;
   view->rules = conic_profile_row_of(profile);
+  view->most_angle = conic_oracle_most_angle(camera);
   for (int axis = 0; axis < 3; axis++) {
     double eye = 0.0;
     for (int row = 0; row < 3; row++)
@@ -310,7 +312,7 @@ static conic_status draw_gaussians_again(job *j) {
   conic_status status = allocate_job(j, camera->width, camera->height);
   if (status != CONIC_OK)
     return status;
-  if (camera->lens || camera->kind == CONIC_CAMERA_FISHEYE || camera->kind == CONIC_CAMERA_EQUIRECTANGULAR) {
+  if (conic_oracle_is_bent(camera)) {
     j->view.rays =
         conic_memory_allocate(j->context, (size_t)camera->width * (size_t)camera->height, sizeof *j->view.rays);
     if (!j->view.rays)
@@ -343,11 +345,11 @@ conic_status conic_gaussian_oracle_render(conic_context *context, const conic_ga
       !camera->lens && (camera->kind == CONIC_CAMERA_PERSPECTIVE || camera->kind == CONIC_CAMERA_ORTHOGRAPHIC);
   if (own.prefilter > 0.0 && !is_affine)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "oracle: the prefilter is of pinholes and orthographic cameras");
-  int takes_all = own.profile == CONIC_PROFILE_EXACT || question != CONIC_GAUSSIAN_PROFILE;
-  if ((takes_all ? conic_view_ray_check : conic_view_pinhole_check)(context, "oracle", camera) != CONIC_OK)
+  const conic_gaussian_profile profile = question == CONIC_GAUSSIAN_PROFILE ? own.profile : CONIC_PROFILE_EXACT;
+  if (conic_view_profile_check(context, "oracle", conic_profile_row_of(profile), camera) != CONIC_OK)
     return CONIC_ERROR_ARGUMENT;
   job j = {.context = context, .set = gaussians, .options = &own, .question = question, .reference = reference};
-  conic_oracle_gaussian_look(camera, question == CONIC_GAUSSIAN_PROFILE ? own.profile : CONIC_PROFILE_EXACT, &j.view);
+  conic_oracle_gaussian_look(camera, profile, &j.view);
   j.view.prefilter = question == CONIC_GAUSSIAN_PROFILE ? own.prefilter : 0.0;
   conic_status status = draw_gaussians_again(&j);
   release_job(&j);

@@ -27,10 +27,36 @@ static void meet_ellipse(const oracle_doubting *d, const bounded at[2], const or
     m->half_q[0] = oracle_max(m->half_q[0], 0.0);
 }
 
-static bounded affine_on_screen(const bounded f[3], const double at[2]) {
+/* f₀ + Σ f_k·at_k, of n. */
+static bounded affine_in(const bounded f[4], const bounded *at, int n) {
   const double unit = ORACLE_FLOAT_UNIT;
-  bounded x = bounded_scale(at[0], f[1], unit), y = bounded_scale(at[1], f[2], unit);
-  return bounded_add(bounded_add(f[0], x, unit), y, unit);
+  bounded sum = f[0];
+  for (int k = 0; k < n; k++)
+    sum = bounded_add(sum, bounded_multiply(at[k], f[k + 1], unit), unit);
+  return sum;
+}
+
+/* From the ray that the Gaussian is set up about: in pixels, or in directions, which conic takes as two floats each. */
+static int find_steps(const oracle_uncertain *g, const oracle_sight *sight, const double at[2], bounded steps[3]) {
+  if (!sight) {
+    steps[0] = bounded_of(at[0]);
+    steps[1] = bounded_of(at[1]);
+    return 2;
+  }
+  for (int k = 0; k < 3; k++) {
+    const double step = sight->direction[k] - g->towards[k];
+    steps[k] = (bounded){step, sight->off + 2.0 * ORACLE_FLOAT_UNIT * fabs(step)};
+  }
+  return 3;
+}
+
+void conic_oracle_sight_of(const oracle_doubting *d, double x, double y, oracle_sight *sight) {
+  memset(sight, 0, sizeof *sight);
+  if (!conic_oracle_is_bent(d->view->camera))
+    return;
+  conic_oracle_lens_see(d->view, x, y, d->model->setup_roundoff, sight);
+  const double split = 0x1p-47 * (1.0 + oracle_length(sight->direction));
+  sight->off += d->model->is_setup_in_float ? 0.0 : split;
 }
 
 /* What of a bounded number is known where it may also be infinite. */
@@ -40,15 +66,18 @@ static void take_bounded(bounded a, double *v, double range[2]) {
   range[1] = a.off < INFINITY ? a.v + a.off : INFINITY;
 }
 
-static void meet_along_ray(const oracle_uncertain *g, const double at[2], oracle_meeting *m) {
+static void meet_along_ray(const oracle_uncertain *g, const oracle_sight *sight, const double at[2],
+                           oracle_meeting *m) {
   const double unit = ORACLE_FLOAT_UNIT;
-  bounded along[3], across[3], e;
+  bounded along[3], across[3], steps[3], e;
+  const int n = find_steps(g, sight, at, steps);
   for (int k = 0; k < 3; k++) {
-    const bounded of_g[3] = {g->g[0][k], g->g[1][k], g->g[2][k]}, of_c[3] = {g->c[0][k], g->c[1][k], g->c[2][k]};
-    along[k] = affine_on_screen(of_g, at);
-    across[k] = affine_on_screen(of_c, at);
+    const bounded of_g[4] = {g->g[0][k], g->g[1][k], g->g[2][k], g->g[3][k]};
+    const bounded of_c[4] = {g->c[0][k], g->c[1][k], g->c[2][k], g->c[3][k]};
+    along[k] = affine_in(of_g, steps, n);
+    across[k] = affine_in(of_c, steps, n);
   }
-  e = affine_on_screen(g->e, at);
+  e = affine_in(g->e, steps, n);
   bounded squares = bounded_dot(along, along, unit), distance = bounded_dot(across, across, unit);
   bounded inverse = bounded_divide(bounded_of(1.0), squares, unit);
   take_bounded(bounded_scale(0.5, bounded_multiply(distance, inverse, unit), unit), &m->half_q_v, m->half_q);
@@ -158,10 +187,11 @@ static void take_what_passes(const oracle_doubting *d, oracle_meeting *m) {
     m->z[0] = oracle_max(m->z[0], nearest);
 }
 
-void conic_oracle_uncertain_meet(const oracle_doubting *d, const oracle_uncertain *g, double x, double y,
-                                 oracle_meeting *m) {
+void conic_oracle_uncertain_meet(const oracle_doubting *d, const oracle_uncertain *g, const oracle_sight *sight,
+                                 double x, double y, oracle_meeting *m) {
   const conic_profile_row *rules = d->view->rules;
   const double from[2] = {x - g->pixel[0], y - g->pixel[1]};
+  const int is_bent = conic_oracle_is_bent(d->view->camera);
   bounded at[2];
   *m = (oracle_meeting){.g = g, .covers = 1, .may_cover = 1, .doubts = g->doubts};
   for (int axis = 0; axis < 2; axis++)
@@ -171,13 +201,16 @@ void conic_oracle_uncertain_meet(const oracle_doubting *d, const oracle_uncertai
   else if (rules->shape == CONIC_SHAPE_DISC && d->model->is_setup_in_float)
     meet_disc_in_float(g, x, y, m);
   else
-    meet_along_ray(g, from, m);
+    meet_along_ray(g, is_bent ? sight : NULL, from, m);
   if (rules->shape == CONIC_SHAPE_DISC)
     take_dot(at, m);
   if (rules->shape == CONIC_SHAPE_ELLIPSE || (rules->shape == CONIC_SHAPE_DISC && !(d->limits.disc_near > 0.0)))
     take_bounded(g->z, &m->z_v, m->z);
   find_alpha(d, g, m);
   ask_all(d, x, y, m);
+  if (is_bent)
+    ask_whether(m, CONIC_DOUBT_NEAR, CONIC_PART_OUTSIDE, sight->is_there, sight->may_be_there,
+                !(sight->off < INFINITY));
   if (rules->shape == CONIC_SHAPE_SOLID)
     take_bounded(g->z, &m->z_v, m->z);
   if (m->may_cover)

@@ -142,7 +142,7 @@ int conic_oracle_has_to_list(const oracle_doubting *d, const oracle_projected *p
   if (d->view->rules->shape != CONIC_SHAPE_ELLIPSE || d->view->rules->coverage == CONIC_COVERAGE_TILES)
     return 1;
   least_in_box(&p->g, low, high, at);
-  conic_oracle_uncertain_meet(d, &p->g, at[0], at[1], &meeting);
+  conic_oracle_uncertain_meet(d, &p->g, NULL, at[0], at[1], &meeting);
   return meeting.covers && !(meeting.doubts & ~(1u << CONIC_DOUBT_MOST));
 }
 

@@ -1,5 +1,6 @@
 /* Which ray goes through a pixel, for any camera: conic/camera.h once more, by halves of brackets. */
 #include "oracle/gaussians/oracle_gaussian.h"
+#include "oracle/gaussians/oracle_lens.h"
 #include "oracle/oracle_math.h"
 
 #define ORACLE_PI 3.14159265358979323846
@@ -136,8 +137,17 @@ int conic_oracle_pixel_ray(const conic_camera *camera, double x, double y, doubl
   }
 }
 
-void conic_oracle_ray_row(const conic_camera *camera, size_t row, oracle_ray *rays) {
-  for (int column = 0; column < camera->width; column++)
-    rays[column].is_there =
-        conic_oracle_pixel_ray(camera, column + 0.5, (double)row + 0.5, rays[column].origin, rays[column].direction);
+void conic_oracle_ray_row(const oracle_gaussian_view *view, size_t row, oracle_ray *rays) {
+  for (int column = 0; column < view->camera->width; column++) {
+    const double x = column + 0.5, y = (double)row + 0.5;
+    oracle_ray *ray = &rays[column];
+    oracle_sight sight;
+    if (view->rules->shape != CONIC_SHAPE_SOLID) {
+      ray->is_there = conic_oracle_pixel_ray(view->camera, x, y, ray->origin, ray->direction);
+      continue;
+    }
+    conic_oracle_lens_see(view, x, y, 0.0, &sight);
+    *ray = (oracle_ray){.is_there = sight.is_there};
+    memcpy(ray->direction, sight.direction, sizeof ray->direction);
+  }
 }

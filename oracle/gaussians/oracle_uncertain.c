@@ -347,27 +347,45 @@ static void reach_of_ellipsoid(const oracle_doubting *d, const bounded_frame *f,
   }
 }
 
-/* g, c and e of docs/reference/gaussians.md about the pixel that the Gaussian has as its own. */
+/* The direction that a Gaussian is set up about where rays are not affine: towards its mean, as conic has it, too. */
+static void aim_at(const oracle_doubting *d, const bounded_frame *f, oracle_uncertain *g) {
+  const double at[3] = {f->mean[0].v, f->mean[1].v, f->mean[2].v};
+  const int is_fisheye = d->view->camera->kind == CONIC_CAMERA_FISHEYE;
+  const double length = is_fisheye ? oracle_length(at) : at[2];
+  const int is_steep = !is_fisheye && (fabs(at[0]) > 1000.0 * length || fabs(at[1]) > 1000.0 * length);
+  for (int axis = 0; axis < 3; axis++)
+    g->towards[axis] = is_steep || !(length > 0.0) ? axis == 2 : at[axis] / length;
+}
+
+/* g, c and e of docs/reference/gaussians.md about the pixel that the Gaussian has as its own, or about its direction.
+ */
 static int bound_ray(const oracle_doubting *d, const bounded_frame *f, oracle_uncertain *g) {
   const conic_camera *camera = d->view->camera;
   const double unit = f->unit;
-  const double steps[3][3] = {
+  double steps[4][3] = {
       {(g->pixel[0] - d->view->center_px[0]) / camera->fx, (g->pixel[1] - d->view->center_px[1]) / camera->fy, 1.0},
       {1.0 / camera->fx, 0.0, 0.0},
       {0.0, 1.0 / camera->fy, 0.0}};
+  const int n = conic_oracle_is_bent(camera) ? 4 : 3;
+  if (n == 4) {
+    aim_at(d, f, g);
+    memset(steps, 0, sizeof steps);
+    memcpy(steps[0], g->towards, sizeof g->towards);
+    steps[1][0] = steps[2][1] = steps[3][2] = 1.0;
+  }
   bounded m[3];
   double longest = 0.0;
   for (int k = 0; k < 3; k++) {
     bounded inverse = bounded_of(f->is_flat && k == 2 ? 1.0 : 1.0 / f->scale[k]);
     m[k] = bounded_multiply(bounded_dot(f->direction[k], f->mean, unit), inverse, unit);
-    for (int step = 0; step < 3; step++) {
+    for (int step = 0; step < n; step++) {
       bounded ray[3];
       for (int row = 0; row < 3; row++)
         ray[row] = bounded_rounded(bounded_of(steps[step][row]), unit);
       g->g[step][k] = bounded_multiply(bounded_dot(f->direction[k], ray, unit), inverse, unit);
     }
   }
-  for (int step = 0; step < 3; step++) {
+  for (int step = 0; step < n; step++) {
     bounded_cross(g->g[step], m, unit, g->c[step]);
     if (f->is_flat)
       g->c[step][2] = g->g[step][0] = g->g[step][1] = bounded_of(0.0);
@@ -379,7 +397,7 @@ static int bound_ray(const oracle_doubting *d, const bounded_frame *f, oracle_un
   }
   if (!(longest > 0.0) || !oracle_is_finite(longest))
     return 0;
-  for (int step = 0; step < 3; step++) {
+  for (int step = 0; step < n; step++) {
     for (int k = 0; k < 3; k++) {
       g->g[step][k] = bounded_rounded(bounded_scale(1.0 / longest, g->g[step][k], unit), ORACLE_FLOAT_UNIT);
       g->c[step][k] = bounded_rounded(bounded_scale(1.0 / longest, g->c[step][k], unit), ORACLE_FLOAT_UNIT);
@@ -404,7 +422,10 @@ static int place_ray(const oracle_doubting *d, const bounded_frame *f, oracle_un
   bound_offset(d, f->unit, g);
   g->is_placed = 1;
   double q = conic_oracle_reach_in_q(d, g->opacity);
-  reach_of_ellipsoid(d, f, q, g);
+  if (conic_oracle_is_bent(camera))
+    conic_oracle_reach_everywhere(g);
+  else
+    reach_of_ellipsoid(d, f, q, g);
   return q >= 0.0 && bound_ray(d, f, g);
 }
 

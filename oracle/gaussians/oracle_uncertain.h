@@ -4,6 +4,7 @@
 #include "conic/gaussian_judge.h"
 #include "oracle/gaussians/oracle_bounded.h"
 #include "oracle/gaussians/oracle_gaussian.h"
+#include "oracle/gaussians/oracle_lens.h"
 #include "oracle/gaussians/oracle_surface.h"
 
 /* The profile's limits as the floats that everybody has of them. */
@@ -26,15 +27,20 @@ typedef struct oracle_uncertain {
   double pixel[2];             /* the centre of the pixel that offsets are counted from */
   bounded place[2], offset[2]; /* on the screen; from there to that pixel */
   bounded form[3];
-  bounded g[3][3], c[3][3], e[3]; /* of rays: at that pixel, and how they grow in x and in y */
-  bounded rows[3][3];             /* of a disc: from its plane to the screen */
-  int is_placed;                  /* these are known, though it may be drawn nowhere: */
-  int may_lack_inverse;           /* its ellipse may be none */
-  bounded covariance[3];          /* of an ellipse, dilated: xx, xy, yy */
-  bounded radius[2];              /* by the profile's rule, before it is rounded up; negative: it has none */
-  double reach[2][2];             /* beyond it on the screen α is below its least for sure: minimum, maximum */
-  double sure[2][2], wide[2][2];  /* pixels' centres that the rules of coverage admit: for sure, perhaps */
+  bounded g[4][3], c[4][3], e[4]; /* of rays: at that pixel, and how they grow in x and in y; of rays that are not
+                                     affine on the screen, at `towards`, and by x, y and z of the direction */
+  double towards[3];
+  bounded rows[3][3];            /* of a disc: from its plane to the screen */
+  int is_placed;                 /* these are known, though it may be drawn nowhere: */
+  int may_lack_inverse;          /* its ellipse may be none */
+  bounded covariance[3];         /* of an ellipse, dilated: xx, xy, yy */
+  bounded radius[2];             /* by the profile's rule, before it is rounded up; negative: it has none */
+  double reach[2][2];            /* beyond it on the screen α is below its least for sure: minimum, maximum */
+  double sure[2][2], wide[2][2]; /* pixels' centres that the rules of coverage admit: for sure, perhaps */
 } oracle_uncertain;
+
+/* Where the view's rays are not affine on the screen, the pixel's. */
+void conic_oracle_sight_of(const oracle_doubting *d, double x, double y, oracle_sight *sight);
 
 /* Whether the profile has radii, and with them tiles. */
 int conic_oracle_has_radii(const conic_profile_row *rules);
@@ -61,8 +67,9 @@ struct oracle_meeting {
   const oracle_meeting *latest_before; /* among the meetings that stand before it */
 };
 
-void conic_oracle_uncertain_meet(const oracle_doubting *d, const oracle_uncertain *g, double x, double y,
-                                 oracle_meeting *meeting);
+/* `sight`: conic_oracle_sight_of's. */
+void conic_oracle_uncertain_meet(const oracle_doubting *d, const oracle_uncertain *g, const oracle_sight *sight,
+                                 double x, double y, oracle_meeting *meeting);
 
 /* Whether a comes before b whatever rounding does. */
 int conic_oracle_is_before(const oracle_meeting *a, const oracle_meeting *b);

@@ -1,20 +1,16 @@
 #include "oracle/gaussians/oracle_unscented.h"
 
+#include "oracle/gaussians/oracle_lens.h"
+
 enum { POINTS = 7 }; /* the mean, and one on either side of it along each axis */
 
-/* A place on the screen; 0, 0 where it is behind the eye. */
+/* A place on the screen. */
 static void show_point(const oracle_gaussian_view *view, const bounded at[3], double unit, bounded place[2],
                        oracle_unscented *u) {
-  const double focal[2] = {view->camera->fx, view->camera->fy}, size[2] = {view->camera->width, view->camera->height};
-  int is_in = at[2].v > 0.0, may_be_in = bounded_high(at[2]) > 0.0;
+  const double size[2] = {view->camera->width, view->camera->height};
+  int may_be_in, is_in = conic_oracle_lens_show(view, at, unit, place, &may_be_in);
   for (int axis = 0; axis < 2; axis++) {
     const double margin = view->rules->unscented_share * size[axis];
-    const bounded slope = bounded_scale(focal[axis], bounded_divide(at[axis], at[2], unit), unit);
-    place[axis] = bounded_add(slope, bounded_of(view->center_px[axis]), unit);
-    if (bounded_high(at[2]) <= 0.0)
-      place[axis] = bounded_of(0.0);
-    else if (!(at[2].v > 0.0))
-      place[axis].v = 0.0;
     is_in &= place[axis].v >= -margin && place[axis].v < size[axis] + margin;
     may_be_in &= bounded_high(place[axis]) >= -margin && bounded_low(place[axis]) < size[axis] + margin;
   }
@@ -22,12 +18,26 @@ static void show_point(const oracle_gaussian_view *view, const bounded at[3], do
   u->may_be_seen |= may_be_in;
 }
 
-static bounded lesser(bounded a, bounded b) {
-  return (bounded){oracle_min(a.v, b.v), oracle_max(a.off, b.off)};
+/* What lies between two numbers, about one of them. */
+static bounded between(double v, double low, double high) {
+  return (bounded){v, oracle_max(v - low, high - v)};
 }
 
-static bounded at_least(bounded a, double least) {
-  return (bounded){oracle_max(a.v, least), a.off};
+static bounded lesser(bounded a, bounded b) {
+  return between(oracle_min(a.v, b.v), oracle_min(bounded_low(a), bounded_low(b)),
+                 oracle_min(bounded_high(a), bounded_high(b)));
+}
+
+static double deviations_to(double opacity, double least) {
+  return opacity > least ? oracle_min(sqrt(2.0 * conic_oracle_log(oracle_min(opacity / least, 1e9))), 3.33) : 0.0;
+}
+
+/* How many standard deviations it reaches, by a logarithm that may be fast. */
+static bounded find_extent(bounded seen, double least, double unit) {
+  const double fast = 16.0 * unit; /* of the ratio, the logarithm of which is off by as much */
+  return bounded_rounded(between(deviations_to(seen.v, least), deviations_to(bounded_low(seen) * (1.0 - fast), least),
+                                 deviations_to(bounded_high(seen) * (1.0 + fast), least)),
+                         unit);
 }
 
 /* The half sizes of the box from the variances, undilated and dilated. */
@@ -40,14 +50,13 @@ static void find_radii(const oracle_gaussian_view *view, const bounded bare[3], 
     const bounded *c = i ? v : bare;
     determinants[i] = bounded_subtract(bounded_multiply(c[0], c[2], unit), bounded_multiply(c[1], c[1], unit), unit);
   }
-  const bounded share = at_least(bounded_divide(determinants[0], determinants[1], unit), 2.5e-5);
+  const bounded share = bounded_within(bounded_divide(determinants[0], determinants[1], unit), 2.5e-5, INFINITY);
   const bounded seen = bounded_multiply(opacity, bounded_root(share, unit), unit);
   const bounded mean = bounded_scale(0.5, bounded_add(v[0], v[2], unit), unit);
   const bounded apart = bounded_subtract(bounded_multiply(mean, mean, unit), determinants[1], unit);
-  const bounded longest = bounded_root(bounded_add(mean, bounded_root(at_least(apart, 0.01), unit), unit), unit);
-  const double log = seen.v > least ? conic_oracle_log(seen.v / least) : 0.0;
-  const double of_log = bounded_low(seen) > 0.0 ? seen.off / bounded_low(seen) + 8.0 * unit * (1.0 + log) : INFINITY;
-  const bounded extent = lesser(bounded_root((bounded){2.0 * log, 2.0 * of_log}, unit), bounded_of(3.33));
+  const bounded longest =
+      bounded_root(bounded_add(mean, bounded_root(bounded_within(apart, 0.01, INFINITY), unit), unit), unit);
+  const bounded extent = find_extent(seen, least, unit);
   for (int axis = 0; axis < 2; axis++)
     u->radius[axis] = bounded_multiply(extent, lesser(bounded_root(v[(size_t)axis * 2], unit), longest), unit);
   u->conditions[0] = determinants[1];

@@ -14,9 +14,12 @@ static conic_camera camera_of_kind(uint32_t kind, double distance, int width, in
   return camera;
 }
 
+static conic_gaussian_profile drawn = CONIC_PROFILE_EXACT;
+
 static conic_gaussian_options exact_options(double prefilter, conic_isa isa) {
   conic_gaussian_options options;
   conic_gaussian_options_init(&options);
+  options.profile = drawn;
   options.prefilter = prefilter;
   options.isa = isa;
   return options;
@@ -407,6 +410,21 @@ static void test_orthographic(conic_context *context, conic_context *one) {
   conic_gaussians_release(context, &flat);
 }
 
+/* 3dgut-2025 through the lenses that it takes. */
+static void test_solids(conic_context *context, conic_context *one) {
+  conic_gaussians scene = gaussians_random(context, 300, 2, 0);
+  drawn = CONIC_PROFILE_3DGUT_2025;
+  for (int i = 0; i < N_LENS_CASES; i++) {
+    const conic_camera camera = camera_of_case(&lens_cases[i], 5.0, 70, 50);
+    const int is_radial = camera.lens == CONIC_LENS_NONE || camera.lens == CONIC_LENS_RADIAL;
+    const int is_pinhole = camera.kind == CONIC_CAMERA_PERSPECTIVE && camera.distortion[3] == 0.0;
+    if (camera.kind == CONIC_CAMERA_FISHEYE ? is_radial : camera.lens == CONIC_LENS_OPENCV || (is_radial && is_pinhole))
+      compare_view(context, one, lens_cases[i].name, &scene, &camera, 0.0, 1e-6);
+  }
+  drawn = CONIC_PROFILE_EXACT;
+  conic_gaussians_release(context, &scene);
+}
+
 static void test_refused_views(conic_context *quiet) {
   conic_gaussians scene = gaussians_random(quiet, 4, 0, 0);
   conic_camera camera = camera_of_kind(CONIC_CAMERA_PERSPECTIVE, 5.0, 16, 16);
@@ -435,7 +453,8 @@ static void test_refused_views(conic_context *quiet) {
     CHECK(conic_gaussian_oracle_render(quiet, &scene, &camera, &options, CONIC_GAUSSIAN_PROFILE, &r) ==
           CONIC_ERROR_ARGUMENT);
     options.prefilter = 0.0;
-    for (int kind = 1; kind < CONIC_N_CAMERA_KINDS; kind++) {
+    const int is_solid = profile == CONIC_PROFILE_3DGUT_2025; /* which takes fisheyes */
+    for (int kind = is_solid ? CONIC_CAMERA_ORTHOGRAPHIC : 1; kind < CONIC_N_CAMERA_KINDS; kind++) {
       conic_camera other = camera;
       other.kind = (uint32_t)kind;
       CHECK(conic_gaussians_render(quiet, &scene, &other, &options, &p, NULL) == CONIC_ERROR_ARGUMENT);
@@ -459,6 +478,7 @@ int main(void) {
   test_lens_round_trips();
   test_folds();
   test_cameras_by_oracle(context, one);
+  test_solids(context, one);
   test_places(context);
   test_resampled(context);
   test_seam(context);
