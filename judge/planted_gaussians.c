@@ -167,6 +167,7 @@ typedef struct kept_room {
 } kept_room;
 
 typedef struct planted_job {
+  conic_camera camera; /* in the middle of the exposure */
   conic_context *context;
   const conic_gaussians *set;
   const conic_planted *planted;
@@ -396,7 +397,7 @@ static void look(planted_job *j, int is_affine) {
   const conic_planted *p = j->planted;
   const double(*rows)[4] = p->camera.cam_from_world;
   j->view = (conic_gaussian_view){.rules = &p->rules,
-                                  .camera = &p->camera,
+                                  .camera = &j->camera,
                                   .center_px = {p->camera.cx, p->camera.cy},
                                   .prefilter = p->prefilter,
                                   .is_parallel = p->camera.kind == CONIC_CAMERA_ORTHOGRAPHIC,
@@ -415,12 +416,15 @@ conic_status conic_planted_gaussians_draw(conic_context *context, const conic_ga
                                           const conic_planted *planted, int samples, const conic_diagnosis_samples *at,
                                           conic_channels *values) {
   const conic_camera *camera = &planted->camera;
-  const int is_affine =
-      camera->kind == CONIC_CAMERA_ORTHOGRAPHIC || (camera->kind == CONIC_CAMERA_PERSPECTIVE && !camera->lens);
+  const int is_affine = camera->kind == CONIC_CAMERA_ORTHOGRAPHIC ||
+                        (camera->kind == CONIC_CAMERA_PERSPECTIVE && !camera->lens && !camera->shutter);
   planted_job j = {.context = context, .set = gaussians, .planted = planted, .at = at, .values = values};
   j.frame = (conic_planted_frame){.planted = planted, .samples = samples};
+  conic_camera_shutter_middle(camera, &j.camera);
   look(&j, is_affine);
-  conic_status status = is_affine ? CONIC_OK : conic_view_rays_make(context, camera, &planted->rules, &j.rays);
+  if (camera->shutter)
+    conic_camera_shutter_eye(camera, j.view.eye);
+  conic_status status = is_affine ? CONIC_OK : conic_view_rays_make(context, &j.camera, &planted->rules, &j.rays);
   if (status == CONIC_OK)
     status = make_sample_grid(&j);
   if (status == CONIC_OK)

@@ -508,7 +508,8 @@ static int add_suspects(const conic_planted *right, const suspected *from, size_
 }
 
 int conic_suspects_of_gaussians(const conic_planted *right, conic_suspect suspects[CONIC_MOST_SUSPECTS]) {
-  const int is_pinhole = right->camera.kind == CONIC_CAMERA_PERSPECTIVE && !right->camera.lens;
+  const int is_pinhole =
+      right->camera.kind == CONIC_CAMERA_PERSPECTIVE && !right->camera.lens && !right->camera.shutter;
   int n = add_suspects(right, of_gaussians, sizeof of_gaussians / sizeof *of_gaussians, suspects);
   n += add_suspects(right, of_all, sizeof of_all / sizeof *of_all, suspects + n);
   for (int profile = 0; is_pinhole && profile < CONIC_N_GAUSSIAN_PROFILES; profile++)

@@ -12,6 +12,7 @@
   }
 NAMED(camera_kind_word, conic_camera_kind_name, conic_camera_kind, CONIC_N_CAMERA_KINDS)
 NAMED(lens_word, conic_lens_name, conic_lens, CONIC_N_LENSES)
+NAMED(shutter_word, conic_shutter_name, conic_shutter, CONIC_N_SHUTTERS)
 NAMED(method_word, conic_method_name, conic_method, CONIC_N_METHODS)
 NAMED(kernel_word, conic_kernel_type_name, conic_kernel_type, CONIC_N_KERNELS)
 NAMED(shading_word, conic_shading_name, conic_shading, CONIC_N_SHADINGS)
@@ -68,7 +69,11 @@ static const conic_shot_row camera_list[] = {
     {CONIC_ROW_WORD, AT(kind), NULL, "how directions become places in the picture", camera_kind_word},
     {CONIC_ROW_WORD, AT(lens), NULL, "how the lens distorts", lens_word},
     {CONIC_ROW_DOUBLE, AT(distortion), NULL, "the lens's numbers", IN(-1e12, 1e12)},
-    RESERVED(reserved)};
+    {CONIC_ROW_WORD, AT(shutter), NULL, "which way a rolling shutter goes", shutter_word},
+    {CONIC_ROW_DOUBLE, AT(turn), NULL, "of a rolling shutter, x, y and z of the quaternion to its last pose",
+     IN(-1, 1)},
+    {CONIC_ROW_DOUBLE, AT(shift), NULL, "of a rolling shutter, what the translation gains", IN(-1e30, 1e30)},
+    RESERVED(reserved_word)};
 TABLE(camera, NULL, conic_fault_of_camera)
 #undef S
 

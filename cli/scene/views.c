@@ -1,6 +1,7 @@
 #include "cli/scene/views.h"
 
 #include "core/files/file.h"
+#include "core/image/camera_shutter.h"
 
 int cli_views_are_all(const char *view) {
   return view && strcmp(view, "all") == 0;
@@ -46,6 +47,17 @@ void cli_view_stem(const conic_cameras *cameras, size_t i_view, char *stem, size
     *stem = '_';
 }
 
+static void write_pose(cli_json *json, const char *name, const double rows[3][4]) {
+  cli_json_array(json, name);
+  for (int row = 0; row < 4; row++) {
+    cli_json_array(json, NULL);
+    for (int column = 0; column < 4; column++)
+      cli_json_number(json, NULL, row < 3 ? rows[row][column] : column == 3 ? 1.0 : 0.0);
+    cli_json_close(json);
+  }
+  cli_json_close(json);
+}
+
 void cli_camera_write(cli_json *json, const conic_camera *camera) {
   cli_json_counts(json, NULL, {"width", (uint64_t)camera->width}, {"height", (uint64_t)camera->height});
   cli_json_figures(json, NULL, {"fx", camera->fx}, {"fy", camera->fy}, {"cx", camera->cx}, {"cy", camera->cy});
@@ -58,12 +70,11 @@ void cli_camera_write(cli_json *json, const conic_camera *camera) {
       cli_json_number(json, NULL, camera->distortion[i]);
     cli_json_close(json);
   }
-  cli_json_array(json, "world_to_camera");
-  for (int row = 0; row < 4; row++) {
-    cli_json_array(json, NULL);
-    for (int column = 0; column < 4; column++)
-      cli_json_number(json, NULL, row < 3 ? camera->cam_from_world[row][column] : column == 3 ? 1.0 : 0.0);
-    cli_json_close(json);
+  write_pose(json, "world_to_camera", camera->cam_from_world);
+  if (camera->shutter) {
+    double end[3][4];
+    conic_camera_shutter_end(camera, end);
+    cli_json_text(json, "shutter", conic_shutter_name((conic_shutter)camera->shutter));
+    write_pose(json, "world_to_camera_end", (const double(*)[4])end);
   }
-  cli_json_close(json);
 }

@@ -2,13 +2,29 @@
 
 #include "core/cameras/camera_list.h"
 #include "core/files/json_read.h"
+#include "core/image/camera_shutter.h"
 #include "core/image/view_arguments.h"
 
-/* The last three may be missing. */
-typedef enum camera_key { WIDTH, HEIGHT, FX, FY, CX, CY, MATRIX, KIND, LENS, DISTORTION, N_KEYS } camera_key;
+/* From KIND on they may be missing. */
+typedef enum camera_key {
+  WIDTH,
+  HEIGHT,
+  FX,
+  FY,
+  CX,
+  CY,
+  MATRIX,
+  KIND,
+  LENS,
+  DISTORTION,
+  SHUTTER,
+  END,
+  N_KEYS
+} camera_key;
 
-static const char *const key_names[N_KEYS] = {"width", "height",          "fx",   "fy",   "cx",
-                                              "cy",    "world_to_camera", "kind", "lens", "distortion"};
+static const char *const key_names[N_KEYS] = {
+    "width",           "height", "fx",   "fy",         "cx",      "cy",
+    "world_to_camera", "kind",   "lens", "distortion", "shutter", "world_to_camera_end"};
 
 static conic_status read_size(conic_json *json, int *size) {
   double value;
@@ -91,13 +107,25 @@ static conic_status read_word(conic_json *json, int is_lens, uint32_t *number) {
                                           "cube");
 }
 
+static conic_status read_shutter(conic_json *json, uint32_t *shutter) {
+  char text[32];
+  conic_status status = conic_json_text(json, text, sizeof text);
+  for (uint32_t i = 0; i < CONIC_N_SHUTTERS && status == CONIC_OK; i++)
+    if (strcmp(text, conic_shutter_name((conic_shutter)i)) == 0) {
+      *shutter = i;
+      return CONIC_OK;
+    }
+  return conic_json_wrong(json, "a camera's shutter is global, top-to-bottom, left-to-right, bottom-to-top or "
+                                "right-to-left");
+}
+
 static conic_status read_distortion(conic_json *json, double distortion[8]) {
   size_t n;
   conic_status status = conic_json_numbers(json, distortion, 8, &n);
   return status == CONIC_OK && n > 8 ? conic_json_wrong(json, "a distortion has at most 8 numbers") : status;
 }
 
-static conic_status read_value(conic_json *json, camera_key key, conic_camera *camera) {
+static conic_status read_value(conic_json *json, camera_key key, conic_camera *camera, conic_camera *end) {
   switch (key) {
   case WIDTH:
     return read_size(json, &camera->width);
@@ -119,6 +147,10 @@ static conic_status read_value(conic_json *json, camera_key key, conic_camera *c
     return read_word(json, 1, &camera->lens);
   case DISTORTION:
     return read_distortion(json, camera->distortion);
+  case SHUTTER:
+    return read_shutter(json, &camera->shutter);
+  case END:
+    return read_matrix(json, end->cam_from_world);
   case N_KEYS:
     break;
   }
@@ -128,6 +160,7 @@ static conic_status read_value(conic_json *json, camera_key key, conic_camera *c
 static conic_status read_camera(conic_json *json, conic_camera *camera) {
   char key[CONIC_JSON_KEY_ROOM], missing[64];
   int is_given[N_KEYS] = {0};
+  conic_camera end = {.width = 0};
   conic_json_begin_object(json);
   while (conic_json_next_member(json, key)) {
     int i_key = 0;
@@ -135,7 +168,7 @@ static conic_status read_camera(conic_json *json, conic_camera *camera) {
       i_key++;
     if (i_key < N_KEYS && is_given[i_key]++)
       return conic_json_wrong(json, "a key is given twice");
-    read_value(json, (camera_key)i_key, camera);
+    read_value(json, (camera_key)i_key, camera, &end);
   }
   conic_json_end(json);
   for (int i = 0; i < KIND; i++)
@@ -143,6 +176,10 @@ static conic_status read_camera(conic_json *json, conic_camera *camera) {
       snprintf(missing, sizeof missing, "the camera lacks %s", key_names[i]);
       return conic_json_wrong(json, missing);
     }
+  if (is_given[END] != (camera->shutter != CONIC_SHUTTER_GLOBAL))
+    return conic_json_wrong(json, "a rolling shutter, and none else, has world_to_camera_end");
+  if (is_given[END])
+    conic_camera_shutter_between(&end, camera);
   return json->status;
 }
 

@@ -23,8 +23,15 @@ const char *conic_rotation_fault(const double rows[3][4]) {
 }
 
 static const char *find_number_fault(const conic_camera *c) {
-  if (!conic_is_zero(c->reserved, sizeof c->reserved))
+  if (c->reserved_word)
     return "the camera's reserved words are not zero";
+  if (c->shutter >= CONIC_N_SHUTTERS)
+    return "there is no such shutter";
+  for (int i = 0; i < 3; i++)
+    if (!(fabs(c->turn[i]) <= 1.0 && fabs(c->shift[i]) < 1e30))
+      return "the turn or the shift of the camera's shutter is out of range";
+  if (c->shutter && (c->width < 2 || c->height < 2))
+    return "a rolling shutter has two rows and columns or more";
   if (c->kind >= CONIC_N_CAMERA_KINDS || c->lens >= CONIC_N_LENSES)
     return "there is no such kind of camera, or no such lens";
   for (int i = 0; i < 8; i++)
@@ -48,9 +55,18 @@ int conic_camera_is_wrong(const conic_camera *c, char wrong[CONIC_CAMERA_FAULT_R
   return number || matrix;
 }
 
-conic_status conic_view_camera_check(conic_context *context, const char *who, const conic_camera *c) {
+static conic_status check_any_shutter(conic_context *context, const char *who, const conic_camera *c) {
   char wrong[CONIC_CAMERA_FAULT_ROOM];
   return conic_camera_is_wrong(c, wrong) ? conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: %s", who, wrong) : CONIC_OK;
+}
+
+conic_status conic_view_camera_check(conic_context *context, const char *who, const conic_camera *c) {
+  conic_status status = check_any_shutter(context, who, c);
+  if (status == CONIC_OK && c->shutter)
+    return conic_fail(
+        context, CONIC_ERROR_ARGUMENT,
+        "%s: the camera has a rolling shutter, by which Gaussians are drawn with --profile 3dgut-2025 alone", who);
+  return status;
 }
 
 conic_status conic_view_pinhole_check(conic_context *context, const char *who, const conic_camera *c) {
@@ -86,7 +102,7 @@ conic_status conic_view_profile_check(conic_context *context, const char *who, c
                                       const conic_camera *camera) {
   if (rules->shape != CONIC_SHAPE_SOLID)
     return (rules->shape == CONIC_SHAPE_RAY ? conic_view_ray_check : conic_view_pinhole_check)(context, who, camera);
-  conic_status status = conic_view_camera_check(context, who, camera);
+  conic_status status = check_any_shutter(context, who, camera);
   if (status != CONIC_OK || is_of_gsplat(camera))
     return status;
   return conic_fail(context, CONIC_ERROR_ARGUMENT,

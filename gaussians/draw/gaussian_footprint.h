@@ -31,6 +31,9 @@ typedef struct conic_gaussian_filter {
 typedef struct conic_gaussian_sight {
   float high[3], low[3]; /* a direction of the camera's rays, near the mean's: their sum */
   float g[3][4], c[3][4], e[4];
+  float origin_high[3], origin_low[3],
+      unit; /* with a rolling shutter, where that ray begins, and what g was divided by:
+               o off it, c gains −g × unit·(g₁, g₂, g₃)·o, e −g·(g₁, g₂, g₃)·o; or 0 */
 } conic_gaussian_sight;
 
 typedef struct conic_view_rays conic_view_rays;

@@ -321,9 +321,16 @@ static void look_through(const conic_camera *camera, conic_gaussian_view *view) 
   view->center_px[1] = view->rules->takes_middle ? 0.5 * camera->height : camera->cy;
 }
 
+static void take_eye_of_shutter(const conic_camera *camera, conic_gaussian_view *view) {
+  conic_camera_shutter_eye(camera, view->eye);
+  for (int axis = 0; axis < 3; axis++)
+    view->eye[axis] = (double)(float)view->eye[axis];
+}
+
 /* Whether rays are affine on the screen. */
 static int is_affine(const conic_camera *camera) {
-  return camera->kind == CONIC_CAMERA_ORTHOGRAPHIC || (camera->kind == CONIC_CAMERA_PERSPECTIVE && !camera->lens);
+  return camera->kind == CONIC_CAMERA_ORTHOGRAPHIC ||
+         (camera->kind == CONIC_CAMERA_PERSPECTIVE && !camera->lens && !camera->shutter);
 }
 
 static conic_status check_sight(conic_context *context, const conic_camera *camera,
@@ -392,9 +399,11 @@ conic_status conic_gaussian_picture_begin(conic_context *context, const conic_ga
   f->context = context;
   f->set = gaussians;
   f->options = own;
-  f->camera = *camera;
+  conic_camera_shutter_middle(camera, &f->camera);
   f->has_normals = has_normals;
   look_at_scene(f, isa);
+  if (camera->shutter)
+    take_eye_of_shutter(camera, &f->view);
   status = set_up_scene(f);
   if (status == CONIC_OK)
     *picture = f;

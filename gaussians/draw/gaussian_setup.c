@@ -360,11 +360,15 @@ static int find_sigma_points(const conic_gaussian_view *view, const conic_gaussi
     double at[3];
     for (int row = 0; row < 3; row++)
       at[row] = p->mean[row] + along * p->unit[axis_of][row];
-    int is_in = view->rays ? conic_view_lens_show(&view->rays->lens, at, points[i]) : at[2] > 0.0;
+    if (view->rays) {
+      double share;
+      is_seen |= conic_view_rays_show(view->rays, at, view->rules->unscented_share, points[i], &share);
+      continue;
+    }
+    int is_in = at[2] > 0.0;
     for (int axis = 0; axis < 2; axis++) {
       const double margin = view->rules->unscented_share * size[axis];
-      if (!view->rays)
-        points[i][axis] = at[2] > 0.0 ? focal[axis] * (at[axis] / at[2]) + view->center_px[axis] : 0.0;
+      points[i][axis] = at[2] > 0.0 ? focal[axis] * (at[axis] / at[2]) + view->center_px[axis] : 0.0;
       is_in &= points[i][axis] >= -margin && points[i][axis] < size[axis] + margin;
     }
     is_seen |= is_in;
@@ -411,14 +415,33 @@ static int find_unscented_box(const conic_gaussian_view *view, const conic_gauss
   return is_number(place[0]) && is_number(place[1]) && find_unscented_size(rules, v, p->opacity, half);
 }
 
+/* The ray towards the mean at the time when it is seen. */
+static void aim_in_time(const conic_gaussian_view *view, const conic_gaussian_placed *p, double direction[3],
+                        double origin[3]) {
+  double place[2], turn[3][3], at[3], share;
+  conic_view_rays_show(view->rays, p->mean, view->rules->unscented_share, place, &share);
+  share = conic_limited(share, -1.0, 1.0);
+  conic_camera_shutter_pose(&view->rays->shutter, share, turn, at);
+  for (int i = 0; i < 3; i++)
+    at[i] += conic_dot(turn[i], p->mean);
+  conic_view_rays_towards(view->camera, at, direction);
+  conic_view_rays_turn(view->rays, share, direction, origin);
+}
+
 /* g and c about a direction, and their derivatives by directions; e of these. */
 static int find_sight(const conic_gaussian_view *view, const conic_gaussian_placed *p, conic_gaussian_sight *sight) {
   double directions[4][3] = {{0.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
-  double g[4][3], c[4][3], e[4], m[3], one_over[3], unit_of = 0.0;
-  conic_view_rays_towards(view->camera, p->mean, directions[0]);
+  double g[4][3], c[4][3], e[4], m[3], one_over[3], unit_of = 0.0, origin[3] = {0.0, 0.0, 0.0};
+  if (view->camera->shutter)
+    aim_in_time(view, p, directions[0], origin);
+  else
+    conic_view_rays_towards(view->camera, p->mean, directions[0]);
+  const double from_origin[3] = {p->mean[0] - origin[0], p->mean[1] - origin[1], p->mean[2] - origin[2]};
   for (int k = 0; k < 3; k++) {
     one_over[k] = p->is_flat && k == 2 ? 1.0 : 1.0 / p->scale[k];
-    m[k] = conic_dot(p->unit[k], p->mean) * one_over[k];
+    m[k] = conic_dot(p->unit[k], from_origin) * one_over[k];
+    sight->origin_high[k] = (float)origin[k];
+    sight->origin_low[k] = (float)(origin[k] - (double)sight->origin_high[k]);
     sight->high[k] = (float)directions[0][k];
     sight->low[k] = (float)(directions[0][k] - (double)sight->high[k]);
   }
@@ -433,6 +456,7 @@ static int find_sight(const conic_gaussian_view *view, const conic_gaussian_plac
   }
   if (!(unit_of > 0.0) || !is_number(unit_of))
     return 0;
+  sight->unit = view->camera->shutter ? (float)unit_of : 0.0f;
   for (int i = 0; i < 4; i++) {
     for (int k = 0; k < 3; k++) {
       sight->g[k][i] = (float)(g[i][k] / unit_of);

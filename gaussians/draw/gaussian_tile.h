@@ -58,6 +58,7 @@ typedef struct conic_gaussian_steps {
 /* The directions of a tile's rays, each the sum of two floats; NaN where there is none. */
 typedef struct conic_sight_rays {
   float high[3][CONIC_GAUSSIAN_TILE_PIXELS], low[3][CONIC_GAUSSIAN_TILE_PIXELS];
+  float origin_high[3][CONIC_GAUSSIAN_TILE_PIXELS], origin_low[3][CONIC_GAUSSIAN_TILE_PIXELS]; /* likewise */
 } conic_sight_rays;
 #endif
 

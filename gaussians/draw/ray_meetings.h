@@ -45,8 +45,17 @@ static inline conic_ray_meeting conic_meet_sight(const conic_gaussian_list *list
     g[k] = r->g[k][0] + r->g[k][1] * d[0] + r->g[k][2] * d[1] + r->g[k][3] * d[2];
     c[k] = r->c[k][0] + r->c[k][1] * d[0] + r->c[k][2] * d[1] + r->c[k][3] * d[2];
   }
+  float e = r->e[0] + r->e[1] * d[0] + r->e[2] * d[1] + r->e[3] * d[2];
+  if (r->unit > 0.0f) {
+    float o[3], a[3];
+    for (int k = 0; k < 3; k++)
+      o[k] = (rays->origin_high[k][at] - r->origin_high[k]) + (rays->origin_low[k][at] - r->origin_low[k]);
+    for (int k = 0; k < 3; k++)
+      a[k] = r->g[k][1] * o[0] + r->g[k][2] * o[1] + r->g[k][3] * o[2];
+    for (int k = 0; k < 3; k++)
+      c[k] -= r->unit * (g[(k + 1) % 3] * a[(k + 2) % 3] - g[(k + 2) % 3] * a[(k + 1) % 3]);
+    e -= g[0] * a[0] + g[1] * a[1] + g[2] * a[2];
+  }
   float squares = conic_square_of(g), one_over = 1.0f / squares, half_q = 0.5f * (conic_square_of(c) * one_over);
-  return (conic_ray_meeting){squares > 0.0f ? half_q : -1.0f,
-                             (r->e[0] + r->e[1] * d[0] + r->e[2] * d[1] + r->e[3] * d[2]) * one_over,
-                             list->footprints[i_footprint].opacity};
+  return (conic_ray_meeting){squares > 0.0f ? half_q : -1.0f, e * one_over, list->footprints[i_footprint].opacity};
 }

@@ -34,10 +34,60 @@ static void enclose(const double (*directions)[3], size_t n, conic_view_cone *co
   cone->sine = sqrt(1.0 - cone->cosine * cone->cosine);
 }
 
-static int find_ray(const ray_job *j, int column, int row, double direction[3]) {
-  double origin[3];
-  return j->is_solid ? conic_view_lens_ray(&j->rays->lens, column + 0.5, row + 0.5, direction)
-                     : conic_camera_ray(&j->camera_rays, column + 0.5, row + 0.5, origin, direction);
+void conic_view_rays_turn(const conic_view_rays *rays, double share, double direction[3], double origin[3]) {
+  double turn[3][3], moved[3], own[3] = {direction[0], direction[1], direction[2]};
+  conic_camera_shutter_pose(&rays->shutter, share, turn, moved);
+  for (int i = 0; i < 3; i++) {
+    direction[i] = turn[0][i] * own[0] + turn[1][i] * own[1] + turn[2][i] * own[2];
+    origin[i] = -(turn[0][i] * moved[0] + turn[1][i] * moved[1] + turn[2][i] * moved[2]);
+  }
+}
+
+/* Origins are known of rolling shutters alone. */
+static int find_ray(const ray_job *j, int column, int row, double origin[3], double direction[3]) {
+  const conic_view_rays *rays = j->rays;
+  const double place[2] = {column + 0.5, row + 0.5};
+  origin[0] = origin[1] = origin[2] = 0.0;
+  if (!j->is_solid)
+    return conic_camera_ray(&j->camera_rays, place[0], place[1], origin, direction);
+  const int is_there = conic_view_lens_ray(&rays->lens, place[0], place[1], direction);
+  if (rays->shutter.way)
+    conic_view_rays_turn(rays, conic_camera_shutter_share(&rays->shutter, place), direction, origin);
+  return is_there;
+}
+
+static int show_at(const conic_view_rays *rays, const double at[3], double share, double margin, double place[2]) {
+  const double size[2] = {rays->camera->width, rays->camera->height};
+  double turn[3][3], own[3];
+  memcpy(own, at, sizeof own);
+  if (rays->shutter.way) {
+    conic_camera_shutter_pose(&rays->shutter, share, turn, own);
+    for (int i = 0; i < 3; i++)
+      own[i] += conic_dot(turn[i], at);
+  }
+  int is_in = conic_view_lens_show(&rays->lens, own, place);
+  for (int axis = 0; axis < 2; axis++)
+    is_in &= place[axis] >= -margin * size[axis] && place[axis] < size[axis] + margin * size[axis];
+  return is_in;
+}
+
+int conic_view_rays_show(const conic_view_rays *rays, const double at[3], double margin, double place[2],
+                         double *share) {
+  enum { ROUNDS = 10 };
+  double last[2];
+  *share = -0.5;
+  int is_in = show_at(rays, at, *share, margin, place);
+  if (!rays->shutter.way)
+    return is_in;
+  const int is_in_last = show_at(rays, at, 0.5, margin, last);
+  if (!is_in)
+    memcpy(place, last, sizeof last);
+  is_in |= is_in_last;
+  for (int round = 0; round < ROUNDS && (is_in || round > 0); round++) {
+    *share = conic_camera_shutter_share(&rays->shutter, place);
+    is_in = show_at(rays, at, *share, margin, place);
+  }
+  return is_in;
 }
 
 static void find_tile_rays(void *data, size_t i_tile) {
@@ -46,14 +96,16 @@ static void find_tile_rays(void *data, size_t i_tile) {
   const conic_camera *camera = j->rays->camera;
   int x = (int)(i_tile % (size_t)j->rays->n_tiles[0]) * CONIC_GAUSSIAN_TILE;
   int y = (int)(i_tile / (size_t)j->rays->n_tiles[0]) * CONIC_GAUSSIAN_TILE;
-  double directions[CONIC_GAUSSIAN_TILE_PIXELS][3], direction[3];
+  double directions[CONIC_GAUSSIAN_TILE_PIXELS][3], origin[3], direction[3];
   size_t n = 0;
   for (size_t at = 0; at < CONIC_GAUSSIAN_TILE_PIXELS; at++) {
     int column = x + conic_gaussian_column(at), row = y + conic_gaussian_row(at);
-    int is_there = column < camera->width && row < camera->height && find_ray(j, column, row, direction);
+    int is_there = column < camera->width && row < camera->height && find_ray(j, column, row, origin, direction);
     for (int axis = 0; axis < 3; axis++) {
       to->high[axis][at] = is_there ? (float)direction[axis] : NAN;
       to->low[axis][at] = is_there ? (float)(direction[axis] - (double)to->high[axis][at]) : NAN;
+      to->origin_high[axis][at] = is_there ? (float)origin[axis] : 0.0f;
+      to->origin_low[axis][at] = is_there ? (float)(origin[axis] - (double)to->origin_high[axis][at]) : 0.0f;
     }
     if (is_there) {
       conic_normalize(direction);
@@ -104,8 +156,10 @@ conic_status conic_view_rays_make(conic_context *context, const conic_camera *ca
       CONIC_OK)
     return CONIC_ERROR_MEMORY;
   conic_camera_rays_init(camera, &j.camera_rays);
-  if (j.is_solid)
+  if (j.is_solid) {
     conic_view_lens_init(camera, &rays->lens);
+    conic_camera_shutter_init(camera, &rays->shutter);
+  }
   conic_parallel_for(context, n, find_tile_rays, &j);
   find_block_cones(rays);
   return CONIC_OK;

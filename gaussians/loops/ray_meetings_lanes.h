@@ -45,10 +45,22 @@ CONIC_INLINE meeting_lanes meet_sight_lanes(const conic_gaussian_list *list, uin
     g[k] = r->g[k][0] + r->g[k][1] * d[0] + r->g[k][2] * d[1] + r->g[k][3] * d[2];
     c[k] = r->c[k][0] + r->c[k][1] * d[0] + r->c[k][2] * d[1] + r->c[k][3] * d[2];
   }
+  lanes e = r->e[0] + r->e[1] * d[0] + r->e[2] * d[1] + r->e[3] * d[2];
+  if (r->unit > 0.0f) {
+    lanes o[3], a[3];
+    for (int k = 0; k < 3; k++)
+      o[k] = (lanes_load(&rays->origin_high[k][at]) - r->origin_high[k]) +
+             (lanes_load(&rays->origin_low[k][at]) - r->origin_low[k]);
+    for (int k = 0; k < 3; k++)
+      a[k] = r->g[k][1] * o[0] + r->g[k][2] * o[1] + r->g[k][3] * o[2];
+    for (int k = 0; k < 3; k++)
+      c[k] = c[k] - r->unit * (g[(k + 1) % 3] * a[(k + 2) % 3] - g[(k + 2) % 3] * a[(k + 1) % 3]);
+    e = e - (g[0] * a[0] + g[1] * a[1] + g[2] * a[2]);
+  }
   lanes squares = lanes_dot_of_self(g), one_over = 1.0f / squares;
   lanes half_q = 0.5f * (lanes_dot_of_self(c) * one_over);
   return (meeting_lanes){.half_q = lanes_select(lanes_less(lanes_of(0.0f), squares), half_q, lanes_of(-1.0f)),
-                         .z = (r->e[0] + r->e[1] * d[0] + r->e[2] * d[1] + r->e[3] * d[2]) * one_over};
+                         .z = e * one_over};
 }
 
 #endif

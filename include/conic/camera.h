@@ -38,6 +38,20 @@ typedef enum conic_lens {
   CONIC_N_LENSES
 } conic_lens;
 
+/* Which way the rows or columns of a picture are exposed, one after the other. The pose goes from the first one's to
+ * the last one's linearly in its translation, and by equal turns. Gaussians by 3dgut-2025 alone are drawn so. */
+typedef enum conic_shutter {
+  CONIC_SHUTTER_GLOBAL, /* all at once */
+  CONIC_SHUTTER_TOP_TO_BOTTOM,
+  CONIC_SHUTTER_LEFT_TO_RIGHT,
+  CONIC_SHUTTER_BOTTOM_TO_TOP,
+  CONIC_SHUTTER_RIGHT_TO_LEFT,
+  CONIC_N_SHUTTERS
+} conic_shutter;
+
+/* "global", "top-to-bottom", "left-to-right", "bottom-to-top", "right-to-left"; null for an unknown number. */
+CONIC_API const char *conic_shutter_name(conic_shutter shutter);
+
 /* "perspective", "fisheye", "orthographic", "equirectangular", "cube"; and "none", "radial", "opencv", "thin-prism",
  * "fov", "division", "eucm"; null for an unknown number. */
 CONIC_API const char *conic_camera_kind_name(conic_camera_kind kind);
@@ -50,7 +64,11 @@ typedef struct conic_camera {
   double cam_from_world[3][4]; /* rows of the rotation and the translation; columns act on (x, y, z, 1) */
   uint32_t kind, lens;         /* conic_camera_kind, conic_lens */
   double distortion[8];        /* the lens's numbers as listed; 0 past them */
-  uint64_t reserved[7];
+  uint32_t shutter;            /* conic_shutter; the rest is of a rolling one */
+  uint32_t reserved_word;
+  double turn[3], shift[3]; /* from the first row's or column's pose, which is cam_from_world, to the last one's: x, y
+                               and z of the unit quaternion by which it is turned further (w is not below 0), and
+                               what the translation gains */
 } conic_camera;
 
 /* How conic_camera_frame looks at a box. */
@@ -75,7 +93,8 @@ CONIC_API conic_status conic_camera_frame(conic_context *context, const conic_fr
 
 /* Reads the camera of a file that has one, of any kind that conic_cameras_read reads. conic's own is JSON: width,
  * height, fx, fy, cx, cy, world_to_camera (4 × 4, rows), and kind, lens and distortion where it is no pinhole; other
- * keys are ignored. Errors: INPUT, MEMORY, UNSUPPORTED; *camera is then as it was. */
+ * keys are ignored. A rolling shutter has the keys shutter and world_to_camera_end. Errors: INPUT, MEMORY, UNSUPPORTED;
+ * *camera is then as it was. */
 CONIC_API conic_status conic_camera_read(conic_context *context, const char *path, conic_camera *camera);
 
 CONIC_END_C

@@ -349,7 +349,11 @@ conic_status conic_gaussian_oracle_render(conic_context *context, const conic_ga
   if (conic_view_profile_check(context, "oracle", conic_profile_row_of(profile), camera) != CONIC_OK)
     return CONIC_ERROR_ARGUMENT;
   job j = {.context = context, .set = gaussians, .options = &own, .question = question, .reference = reference};
-  conic_oracle_gaussian_look(camera, profile, &j.view);
+  conic_camera middle;
+  conic_oracle_middle(camera, &middle);
+  conic_oracle_gaussian_look(&middle, profile, &j.view);
+  if (camera->shutter)
+    conic_oracle_shutter_eye(camera, j.view.eye);
   j.view.prefilter = question == CONIC_GAUSSIAN_PROFILE ? own.prefilter : 0.0;
   conic_status status = draw_gaussians_again(&j);
   release_job(&j);

@@ -18,7 +18,8 @@ static lens_numbers numbers_of(const conic_camera *camera) {
 }
 
 int conic_oracle_is_bent(const conic_camera *camera) {
-  return camera->lens || camera->kind == CONIC_CAMERA_FISHEYE || camera->kind == CONIC_CAMERA_EQUIRECTANGULAR;
+  return camera->lens || camera->shutter || camera->kind == CONIC_CAMERA_FISHEYE ||
+         camera->kind == CONIC_CAMERA_EQUIRECTANGULAR;
 }
 
 /* Σ w_i·k_i·s^i from the first power on, n of them, where w is first, first + by, …; all its terms positive in *size.
@@ -124,7 +125,9 @@ static int show_by_fisheye(const oracle_gaussian_view *view, const bounded at[3]
       n_roundings * unit * angle.v * (1.0 + size) + slack * (fabs(slope_of_fisheye(&l, angle.v)) + slack * 64.0);
   bounded part = bounded_divide(radius, across, unit);
   if (!(across.v > 4.0 * across.off)) { /* next to the axis it is 1/z */
+    const double v = across.v > 0.0 ? part.v : 1.0 / at[2].v;
     part = bounded_divide(bounded_of(1.0), at[2], unit);
+    part = (bounded){v, part.off + fabs(part.v - v)};
     part.off += part.v * (bounded_high(across) / at[2].v) * (bounded_high(across) / at[2].v);
     radius = bounded_of(1.0);
   }
@@ -245,10 +248,10 @@ static void see_by_lens(const oracle_gaussian_view *view, const double wanted[2]
   s->off = !s->is_there || !(noise < 3e-7) ? INFINITY : noise + 4.0 * unit * (1.0 + fabs(a) + fabs(b));
 }
 
-/* --- */
+/* --- with the shutter all open --- */
 
-int conic_oracle_lens_show(const oracle_gaussian_view *view, const bounded at[3], double unit, bounded place[2],
-                           int *may_be) {
+static int show_still(const oracle_gaussian_view *view, const bounded at[3], double unit, bounded place[2],
+                      int *may_be) {
   const double focal[2] = {view->camera->fx, view->camera->fy};
   int is_seen = at[2].v > 0.0, may_be_seen = bounded_high(at[2]) > 0.0, is_turned = 0;
   bounded normal[2];
@@ -279,13 +282,204 @@ int conic_oracle_lens_show(const oracle_gaussian_view *view, const bounded at[3]
   return is_seen;
 }
 
-void conic_oracle_lens_see(const oracle_gaussian_view *view, double x_px, double y_px, double unit,
-                           oracle_sight *sight) {
+static void see_still(const oracle_gaussian_view *view, double x_px, double y_px, double unit, oracle_sight *sight) {
   const conic_camera *c = view->camera;
   const double wanted[2] = {(x_px - c->cx) / c->fx, (y_px - c->cy) / c->fy};
-  *sight = (oracle_sight){{wanted[0], wanted[1], 1.0}, 4.0 * unit * (1.0 + fabs(wanted[0]) + fabs(wanted[1])), 1, 1};
+  *sight = (oracle_sight){.direction = {wanted[0], wanted[1], 1.0},
+                          .off = 4.0 * unit * (1.0 + fabs(wanted[0]) + fabs(wanted[1])),
+                          .is_there = 1,
+                          .may_be_there = 1};
   if (c->kind == CONIC_CAMERA_FISHEYE)
     see_by_fisheye(view, wanted, unit, sight);
   else if (c->lens)
     see_by_lens(view, wanted, unit, sight);
+}
+
+/* --- row by row, or column by column --- */
+
+/* Turned by a share of the whole turn: 1 + sin·K + (1 − cos)·K², K the axis' cross product. */
+static void turn_by(const conic_camera *camera, double share, double turn[3][3]) {
+  const double length = oracle_length(camera->turn), part = oracle_min(length, 1.0);
+  const double angle = share * 2.0 * angle_of(part, sqrt(1.0 - part * part)), half = sine_of(0.5 * angle);
+  double k[3];
+  for (int i = 0; i < 3; i++)
+    k[i] = length > 0.0 ? camera->turn[i] / length : 0.0;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      const double cross = i == j ? 0.0 : (j == (i + 2) % 3 ? 1.0 : -1.0) * k[3 - i - j];
+      const double square = k[i] * k[j] - (i == j ? oracle_dot(k, k) : 0.0);
+      turn[i][j] = (i == j) + sine_of(angle) * cross + 2.0 * half * half * square;
+    }
+}
+
+static void pose_of_begin(const conic_camera *camera, double share, double pose[3][4]) {
+  double turn[3][3];
+  turn_by(camera, share, turn);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 4; j++) {
+      pose[i][j] = j == 3 ? camera->cam_from_world[i][3] + share * camera->shift[i] : 0.0;
+      for (int k = 0; k < 3 && j < 3; k++)
+        pose[i][j] += turn[i][k] * camera->cam_from_world[k][j];
+    }
+}
+
+void conic_oracle_middle(const conic_camera *camera, conic_camera *middle) {
+  double pose[3][4];
+  *middle = *camera;
+  if (camera->shutter) {
+    pose_of_begin(camera, 0.5, pose);
+    memcpy(middle->cam_from_world, pose, sizeof pose);
+  }
+}
+
+void conic_oracle_shutter_eye(const conic_camera *camera, double eye[3]) {
+  double pose[3][4];
+  for (int axis = 0; axis < 3; axis++)
+    eye[axis] = 0.0;
+  for (int end = 0; end < 2; end++) {
+    pose_of_begin(camera, end, pose);
+    for (int axis = 0; axis < 3; axis++)
+      for (int row = 0; row < 3; row++)
+        eye[axis] -= 0.5 * pose[row][axis] * pose[row][3];
+  }
+  for (int axis = 0; axis < 3; axis++)
+    eye[axis] = (double)(float)eye[axis];
+}
+
+/* Of the camera in the middle, from whose time shares are counted: its space becomes S·p + moved. */
+static void pose_of_middle(const conic_camera *camera, double share, double turn[3][3], double moved[3]) {
+  turn_by(camera, share, turn);
+  for (int i = 0; i < 3; i++) {
+    moved[i] = camera->cam_from_world[i][3] + share * camera->shift[i];
+    for (int k = 0; k < 3; k++)
+      moved[i] -= turn[i][k] * camera->cam_from_world[k][3];
+  }
+}
+
+static double share_at(const conic_camera *c, double place) {
+  switch ((conic_shutter)c->shutter) {
+  case CONIC_SHUTTER_TOP_TO_BOTTOM:
+    return floor(place) / (c->height - 1.0) - 0.5;
+  case CONIC_SHUTTER_LEFT_TO_RIGHT:
+    return floor(place) / (c->width - 1.0) - 0.5;
+  case CONIC_SHUTTER_BOTTOM_TO_TOP:
+    return (c->height - ceil(place)) / (c->height - 1.0) - 0.5;
+  case CONIC_SHUTTER_RIGHT_TO_LEFT:
+    return (c->width - ceil(place)) / (c->width - 1.0) - 0.5;
+  case CONIC_SHUTTER_GLOBAL:
+  case CONIC_N_SHUTTERS:
+    break;
+  }
+  return 0.0;
+}
+
+static int is_across(const conic_camera *c) {
+  return c->shutter == CONIC_SHUTTER_LEFT_TO_RIGHT || c->shutter == CONIC_SHUTTER_RIGHT_TO_LEFT;
+}
+
+static bounded bounded_share_at(const conic_camera *c, const bounded place[2]) {
+  const bounded at = place[!is_across(c)];
+  if (!bounded_is_finite(at))
+    return (bounded){oracle_is_finite(at.v) ? share_at(c, at.v) : 0.0, INFINITY};
+  const double v = share_at(c, at.v), a = share_at(c, bounded_low(at)), b = share_at(c, bounded_high(at));
+  return (bounded){v, oracle_max(fabs(a - v), fabs(b - v))};
+}
+
+static int show_at(const oracle_gaussian_view *view, const bounded at[3], bounded share, double unit, bounded place[2],
+                   int *may_be) {
+  const conic_camera *c = view->camera;
+  const double p[3] = {at[0].v, at[1].v, at[2].v}, size[2] = {c->width, c->height};
+  double turn[3][3], moved[3], far = oracle_length(p);
+  bounded own[3];
+  if (!(fabs(share.v) <= 4.0)) /* so far beside the picture that floats know nothing of it */
+    share = (bounded){share.v > 0.0 ? 4.0 : -4.0, INFINITY};
+  pose_of_middle(c, share.v, turn, moved);
+  for (int i = 0; i < 3; i++)
+    far += fabs(c->cam_from_world[i][3]);
+  for (int i = 0; i < 3; i++) {
+    own[i] = (bounded){oracle_dot(turn[i], p) + moved[i], 0.0};
+    own[i].off = share.off * (4.0 * oracle_length(c->turn) * far + fabs(c->shift[i]));
+    own[i].off += n_roundings * unit * (far + fabs(c->shift[i]));
+    for (int k = 0; k < 3; k++)
+      own[i].off += fabs(turn[i][k]) * at[k].off;
+  }
+  int is_in = show_still(view, own, unit, place, may_be);
+  for (int axis = 0; axis < 2; axis++) {
+    const double margin = view->rules->unscented_share * size[axis];
+    is_in &= place[axis].v >= -margin && place[axis].v < size[axis] + margin;
+    *may_be &= bounded_high(place[axis]) >= -margin && bounded_low(place[axis]) < size[axis] + margin;
+    *may_be |= !bounded_is_finite(place[axis]);
+  }
+  return is_in;
+}
+
+/* What may be the one or the other. */
+static bounded either(bounded a, bounded b) {
+  return (bounded){a.v, oracle_max(a.off, fabs(a.v - b.v) + b.off)};
+}
+
+int conic_oracle_lens_show(const oracle_gaussian_view *view, const bounded at[3], double unit, bounded place[2],
+                           int *may_be) {
+  bounded first[2], last[2];
+  int may_be_first, may_be_last;
+  if (!view->camera->shutter)
+    return show_still(view, at, unit, place, may_be);
+  const int is_first = show_at(view, at, bounded_of(-0.5), unit, first, &may_be_first);
+  const int is_last = show_at(view, at, bounded_of(0.5), unit, last, &may_be_last);
+  for (int axis = 0; axis < 2; axis++)
+    place[axis] = may_be_first && !is_first ? either(last[axis], first[axis])
+                  : is_first                ? either(first[axis], may_be_first ? first[axis] : last[axis])
+                                            : last[axis];
+  *may_be = may_be_first || may_be_last;
+  if (!is_first && !is_last) {
+    for (int axis = 0; axis < 2 && *may_be; axis++)
+      place[axis].off = INFINITY;
+    return 0;
+  }
+  int is_in = 1;
+  for (int round = 0; round < 10; round++)
+    is_in = show_at(view, at, bounded_share_at(view->camera, place), unit, place, may_be);
+  return is_in;
+}
+
+static void turn_back(const conic_camera *c, double share, double direction[3], double origin[3]) {
+  double turn[3][3], moved[3], own[3] = {direction[0], direction[1], direction[2]};
+  pose_of_middle(c, share, turn, moved);
+  for (int i = 0; i < 3; i++) {
+    const double column[3] = {turn[0][i], turn[1][i], turn[2][i]};
+    direction[i] = oracle_dot(column, own);
+    origin[i] = -oracle_dot(column, moved);
+  }
+}
+
+void conic_oracle_lens_see(const oracle_gaussian_view *view, double x_px, double y_px, double unit,
+                           oracle_sight *sight) {
+  const conic_camera *c = view->camera;
+  see_still(view, x_px, y_px, unit, sight);
+  if (!c->shutter)
+    return;
+  double far = oracle_length(c->shift);
+  for (int i = 0; i < 3; i++)
+    far += fabs(c->cam_from_world[i][3]);
+  turn_back(c, share_at(c, is_across(c) ? x_px : y_px), sight->direction, sight->origin);
+  sight->off += n_roundings * unit * oracle_length(sight->direction);
+  sight->origin_off = n_roundings * unit * far;
+}
+
+void conic_oracle_aim_in_time(const oracle_gaussian_view *view, const double at[3], double direction[3],
+                              double origin[3]) {
+  const bounded place[3] = {bounded_of(at[0]), bounded_of(at[1]), bounded_of(at[2])};
+  const conic_camera *c = view->camera;
+  bounded shown[2];
+  double turn[3][3];
+  int unused;
+  conic_oracle_lens_show(view, place, 0.0, shown, &unused);
+  const double share = oracle_min(oracle_max(share_at(c, shown[!is_across(c)].v), -1.0), 1.0);
+  pose_of_middle(c, share, turn, direction);
+  for (int i = 0; i < 3; i++)
+    direction[i] += oracle_dot(turn[i], at);
+  const double length = c->kind == CONIC_CAMERA_FISHEYE ? oracle_length(direction) : direction[2];
+  for (int i = 0; i < 3; i++)
+    direction[i] = length > 0.0 ? direction[i] / length : i == 2;
+  turn_back(c, share, direction, origin);
 }

@@ -22,7 +22,7 @@ conic_status conic_oracle_enter(conic_context *context, const conic_gaussians *g
     return CONIC_ERROR_ARGUMENT;
   if ((long)camera->width * samples > 65535 || (long)camera->height * samples > 65535)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "judge: so many samples make more than 65535 a side");
-  e->fine = *camera;
+  conic_oracle_middle(camera, &e->fine);
   e->fine.width *= samples;
   e->fine.height *= samples;
   e->fine.fx *= samples;
@@ -30,6 +30,8 @@ conic_status conic_oracle_enter(conic_context *context, const conic_gaussians *g
   e->fine.cx *= samples;
   e->fine.cy *= samples;
   conic_oracle_gaussian_look(&e->fine, e->options.profile, &e->view);
+  if (camera->shutter)
+    conic_oracle_shutter_eye(camera, e->view.eye);
   const conic_profile_row *rules = e->view.rules;
   e->bounding = (oracle_bound_request){
       .context = context,

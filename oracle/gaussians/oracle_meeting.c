@@ -57,6 +57,8 @@ void conic_oracle_sight_of(const oracle_doubting *d, double x, double y, oracle_
   conic_oracle_lens_see(d->view, x, y, d->model->setup_roundoff, sight);
   const double split = 0x1p-47 * (1.0 + oracle_length(sight->direction));
   sight->off += d->model->is_setup_in_float ? 0.0 : split;
+  if (d->view->camera->shutter)
+    sight->origin_off += 0x1p-47 * (1.0 + oracle_length(sight->origin));
 }
 
 /* What of a bounded number is known where it may also be infinite. */
@@ -64,6 +66,26 @@ static void take_bounded(bounded a, double *v, double range[2]) {
   *v = a.v;
   range[0] = a.off < INFINITY ? a.v - a.off : -INFINITY;
   range[1] = a.off < INFINITY ? a.v + a.off : INFINITY;
+}
+
+/* What c and e gain where the ray begins elsewhere than the one that the Gaussian is set up about. */
+static void move_origin(const oracle_uncertain *g, const oracle_sight *sight, const bounded along[3], bounded across[3],
+                        bounded *e) {
+  const double unit = ORACLE_FLOAT_UNIT;
+  bounded moved[3], a[3], gained[3];
+  for (int k = 0; k < 3; k++) {
+    const double step = sight->origin[k] - g->from[k];
+    moved[k] = (bounded){step, sight->origin_off + 2.0 * unit * fabs(step)};
+  }
+  for (int k = 0; k < 3; k++) {
+    const bounded row[3] = {g->g[1][k], g->g[2][k], g->g[3][k]};
+    a[k] = bounded_dot(row, moved, unit);
+  }
+  bounded_cross(along, a, unit, gained);
+  for (int k = 0; k < 3; k++)
+    across[k] = bounded_subtract(across[k],
+                                 bounded_multiply(bounded_rounded(bounded_of(g->unit), unit), gained[k], unit), unit);
+  *e = bounded_subtract(*e, bounded_dot(along, a, unit), unit);
 }
 
 static void meet_along_ray(const oracle_uncertain *g, const oracle_sight *sight, const double at[2],
@@ -78,6 +100,8 @@ static void meet_along_ray(const oracle_uncertain *g, const oracle_sight *sight,
     across[k] = affine_in(of_c, steps, n);
   }
   e = affine_in(g->e, steps, n);
+  if (sight && sight->origin_off > 0.0)
+    move_origin(g, sight, along, across, &e);
   bounded squares = bounded_dot(along, along, unit), distance = bounded_dot(across, across, unit);
   bounded inverse = bounded_divide(bounded_of(1.0), squares, unit);
   take_bounded(bounded_scale(0.5, bounded_multiply(distance, inverse, unit), unit), &m->half_q_v, m->half_q);

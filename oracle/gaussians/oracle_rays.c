@@ -149,5 +149,6 @@ void conic_oracle_ray_row(const oracle_gaussian_view *view, size_t row, oracle_r
     conic_oracle_lens_see(view, x, y, 0.0, &sight);
     *ray = (oracle_ray){.is_there = sight.is_there};
     memcpy(ray->direction, sight.direction, sizeof ray->direction);
+    memcpy(ray->origin, sight.origin, sizeof ray->origin);
   }
 }

@@ -350,6 +350,10 @@ static void reach_of_ellipsoid(const oracle_doubting *d, const bounded_frame *f,
 /* The direction that a Gaussian is set up about where rays are not affine: towards its mean, as conic has it, too. */
 static void aim_at(const oracle_doubting *d, const bounded_frame *f, oracle_uncertain *g) {
   const double at[3] = {f->mean[0].v, f->mean[1].v, f->mean[2].v};
+  if (d->view->camera->shutter) {
+    conic_oracle_aim_in_time(d->view, at, g->towards, g->from);
+    return;
+  }
   const int is_fisheye = d->view->camera->kind == CONIC_CAMERA_FISHEYE;
   const double length = is_fisheye ? oracle_length(at) : at[2];
   const int is_steep = !is_fisheye && (fabs(at[0]) > 1000.0 * length || fabs(at[1]) > 1000.0 * length);
@@ -373,11 +377,13 @@ static int bound_ray(const oracle_doubting *d, const bounded_frame *f, oracle_un
     memcpy(steps[0], g->towards, sizeof g->towards);
     steps[1][0] = steps[2][1] = steps[3][2] = 1.0;
   }
-  bounded m[3];
+  bounded m[3], from[3];
   double longest = 0.0;
+  for (int axis = 0; axis < 3; axis++)
+    from[axis] = camera->shutter ? bounded_subtract(f->mean[axis], bounded_of(g->from[axis]), unit) : f->mean[axis];
   for (int k = 0; k < 3; k++) {
     bounded inverse = bounded_of(f->is_flat && k == 2 ? 1.0 : 1.0 / f->scale[k]);
-    m[k] = bounded_multiply(bounded_dot(f->direction[k], f->mean, unit), inverse, unit);
+    m[k] = bounded_multiply(bounded_dot(f->direction[k], from, unit), inverse, unit);
     for (int step = 0; step < n; step++) {
       bounded ray[3];
       for (int row = 0; row < 3; row++)
@@ -397,6 +403,7 @@ static int bound_ray(const oracle_doubting *d, const bounded_frame *f, oracle_un
   }
   if (!(longest > 0.0) || !oracle_is_finite(longest))
     return 0;
+  g->unit = longest;
   for (int step = 0; step < n; step++) {
     for (int k = 0; k < 3; k++) {
       g->g[step][k] = bounded_rounded(bounded_scale(1.0 / longest, g->g[step][k], unit), ORACLE_FLOAT_UNIT);

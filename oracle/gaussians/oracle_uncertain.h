@@ -27,16 +27,16 @@ typedef struct oracle_uncertain {
   double pixel[2];             /* the centre of the pixel that offsets are counted from */
   bounded place[2], offset[2]; /* on the screen; from there to that pixel */
   bounded form[3];
-  bounded g[4][3], c[4][3], e[4]; /* of rays: at that pixel, and how they grow in x and in y; of rays that are not
-                                     affine on the screen, at `towards`, and by x, y and z of the direction */
-  double towards[3];
-  bounded rows[3][3];            /* of a disc: from its plane to the screen */
-  int is_placed;                 /* these are known, though it may be drawn nowhere: */
-  int may_lack_inverse;          /* its ellipse may be none */
-  bounded covariance[3];         /* of an ellipse, dilated: xx, xy, yy */
-  bounded radius[2];             /* by the profile's rule, before it is rounded up; negative: it has none */
-  double reach[2][2];            /* beyond it on the screen α is below its least for sure: minimum, maximum */
-  double sure[2][2], wide[2][2]; /* pixels' centres that the rules of coverage admit: for sure, perhaps */
+  bounded g[4][3], c[4][3], e[4];   /* of rays: at that pixel, and how they grow in x and in y; of rays that are not
+                                       affine on the screen, at `towards`, and by x, y and z of the direction */
+  double towards[3], from[3], unit; /* where that ray begins; what g was divided by */
+  bounded rows[3][3];               /* of a disc: from its plane to the screen */
+  int is_placed;                    /* these are known, though it may be drawn nowhere: */
+  int may_lack_inverse;             /* its ellipse may be none */
+  bounded covariance[3];            /* of an ellipse, dilated: xx, xy, yy */
+  bounded radius[2];                /* by the profile's rule, before it is rounded up; negative: it has none */
+  double reach[2][2];               /* beyond it on the screen α is below its least for sure: minimum, maximum */
+  double sure[2][2], wide[2][2];    /* pixels' centres that the rules of coverage admit: for sure, perhaps */
 } oracle_uncertain;
 
 /* Where the view's rays are not affine on the screen, the pixel's. */

@@ -129,7 +129,10 @@ class Camera(ctypes.Structure):
         ("kind", c_uint32),
         ("lens", c_uint32),
         ("distortion", c_double * 8),
-        ("reserved", c_uint64 * 7),
+        ("shutter", c_uint32),
+        ("reserved_word", c_uint32),
+        ("turn", c_double * 3),
+        ("shift", c_double * 3),
     ]
 
 

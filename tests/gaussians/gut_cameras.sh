@@ -8,7 +8,7 @@ PYTHONDONTWRITEBYTECODE=1 python3 "$1/tests/gaussians/gut_cameras.py" "$conic" >
 cat table
 
 # Its own judge: no pixel is wrong, and a picture of another lens is.
-for camera in fisheye turned fourth radial opencv strong; do
+for camera in fisheye turned fourth radial opencv strong down right up left; do
   run_as_typed 0 verify large.ply --profile 3dgut-2025 --camera $camera.json --json v.json
   run_as_typed 0 render large.ply --profile 3dgut-2025 --camera $camera.json -o $camera.exr
   run_as_typed 0 judge large.ply --profile 3dgut-2025 --camera $camera.json --picture $camera.exr --floats own
@@ -32,6 +32,15 @@ alter 's/"opencv"/"radial"/' 'its lens radial'
 alter 's/"lens"/"kind": "fisheye", "lens"/' 'is fisheye, its lens opencv'
 alter 's/"lens": "opencv"/"kind": "orthographic"/' 'is orthographic'
 alter 's/"lens": "opencv"/"kind": "equirectangular"/' 'is equirectangular'
+run_as_typed 2 render large.ply --profile exact --camera down.json -o a.exr
+grep -q 'rolling shutter.*3dgut-2025' err || fail "exact by a shutter: $(cat err)"
+sed 's/"shutter": "[a-z-]*",/"shutter": "global",/' down.json > other.json
+run_as_typed 3 render large.ply --profile 3dgut-2025 --camera other.json -o a.exr
+run_as_typed 0 render large.ply --profile 3dgut-2025 --camera down.json -o down.exr --json down_told.json
+perl -0777 -ne '/"camera": (\{.*\]\s*\})/s && print $1' down_told.json > told.json
+grep -q '"shutter": "top-to-bottom"' told.json || fail "no shutter is told: $(head -c 300 down_told.json)"
+run_as_typed 0 render --again down.exr -o again.exr
+run_as_typed 0 diff down.exr again.exr
 run_as_typed 2 render large.ply --profile gsplat-1.6 --camera opencv.json -o a.exr
 grep -q 'pinholes alone' err || fail "gsplat-1.6: $(cat err)"
 

@@ -54,7 +54,7 @@ static void compare_view(conic_context *context, conic_context *one, const char 
   double normal = picture_difference(p.normal, r.normal, 3 * n);
   printf("%-28s rgb %.2g, T %.2g, N %.2g, Z %.2g; %zu of %zu pixels with another count\n", name, rgb, rest, normal,
          depth, n_other, n_covered);
-  CHECK(rgb <= bound && rest <= bound && normal <= bound && n_other * 1000 <= n && n_covered * 10 > n);
+  CHECK(rgb <= bound && rest <= bound && normal <= bound && n_other * 1000 <= n && n_covered * 20 > n);
   for (int isa = CONIC_ISA_SSE2; isa < CONIC_N_ISAS; isa++) {
     conic_gaussian_planes planes = picture_planes(camera);
     options.isa = (conic_isa)isa;
