@@ -1,5 +1,7 @@
 #include "gaussians/draw/unscented_box.h"
 
+#include <math.h>
+
 #include "core/base/power.h"
 #include "gaussians/draw/view_rays.h"
 
