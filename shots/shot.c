@@ -1,6 +1,7 @@
 #include "conic/gaussian_judge.h"
 #include "core/base/color.h"
 #include "shots/backdrop.h"
+#include "shots/bound_plane.h"
 #include "shots/motion_plane.h"
 #include "shots/stage.h"
 #include "shots/way.h"
@@ -64,7 +65,7 @@ conic_status conic_shot_work_begin(conic_source *source, conic_renderer *rendere
   work->source = source;
   work->renderer = renderer;
   work->shot = shot;
-  work->noise = -1.0;
+  work->noise = work->bound = -1.0;
   conic_executor_alone(&work->alone);
   work->executor = &work->alone.executor;
   conic_status status = conic_shot_plan_make(source, renderer, shot, &work->plan);
@@ -103,7 +104,8 @@ static void tell_outcome(const conic_shot_work *work, const conic_render_statist
                                   .light_ms = work->light_ms,
                                   .samples = work->samples,
                                   .noise = work->noise,
-                                  .focus_depth = work->focus_depth};
+                                  .focus_depth = work->focus_depth,
+                                  .bound = work->bound};
 }
 
 conic_status conic_shot_work_draw(conic_shot_work *work, conic_image *image, conic_shot_outcome *outcome) {
@@ -111,12 +113,18 @@ conic_status conic_shot_work_draw(conic_shot_work *work, conic_image *image, con
   conic_shot_stage stages[CONIC_MOST_STAGES];
   conic_render_statistics statistics;
   conic_camera camera;
+  conic_image whole = {0};
   memset(&statistics, 0, sizeof statistics);
   conic_status status = conic_shot_camera(work->context, shot, 0.5, &camera);
   const conic_shot_stage *first = stages_chain(work, stages);
   const conic_look look = {&camera, &shot->render, &shot->view, NULL};
   if (status == CONIC_OK)
+    status = conic_bound_plane_begin(first, &look, image, &whole);
+  if (status == CONIC_OK)
     status = first->draw(first, &look, image, &statistics);
+  if (status == CONIC_OK && conic_work_has_picture(work) && conic_image_planes(&whole))
+    work->bound = conic_bound_plane_find(&whole, image);
+  conic_image_release(work->context, &whole);
   if (status == CONIC_OK && conic_work_has_picture(work) && shot->has_backdrop)
     conic_backdrop_put(shot->backdrop_top, shot->backdrop_bottom, conic_exposure_factor(shot->render.exposure), image);
   if (status == CONIC_OK && conic_work_has_picture(work))

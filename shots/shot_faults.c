@@ -68,6 +68,9 @@ const char *conic_fault_of_shot(const void *value) {
     return "more samples than there may be";
   if (shot->n_samples > 0 && shot->view.samples > 1)
     return "means of samples draw one sample a pixel at a time: view.samples is 1";
+  if (shot->planes & 1u << CONIC_PLANE_BOUND &&
+      (shot->n_samples > 0 || !(shot->view.error_px > 0.0 || shot->view.budget)))
+    return "the plane bound is of pictures by an error or a budget that are no means: view.error_px or view.budget";
   if (!shot->n_samples && shot->planes & of_means)
     return "the planes samples and variance are of means: n_samples is above 0";
   if (!shot->n_samples && (shot->aperture.diameter > 0.0 || shot->is_shutter_open || shot->motion))

@@ -18,6 +18,8 @@ unsigned conic_shot_needs(const conic_shot *shot, unsigned planes) {
   if (planes & 1u << CONIC_PLANE_POSITION || (planes & RGBA && shot->light.dome_stops > 0.0) ||
       (shot->n_samples > 0 && conic_focus_is_seen(shot)))
     planes |= Z;
+  if (planes & 1u << CONIC_PLANE_BOUND)
+    planes |= RGBA;
   if (planes & MOTION)
     planes |= Z | (shot->motion ? 1u << CONIC_PLANE_ID : 0);
   if (planes & 1u << CONIC_PLANE_CLUSTER || shot->catchers | shot->holdouts)

@@ -52,6 +52,7 @@ typedef struct conic_shot_work {
   double light_ms;
   conic_accumulation_facts samples;
   double noise;
+  double bound; /* the greatest of the plane; below 0: there is none */
 } conic_shot_work;
 
 typedef struct conic_shot_stage conic_shot_stage;

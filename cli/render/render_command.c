@@ -124,6 +124,7 @@ static conic_status render_repeats(cli_session *session, cli_render_job *job, in
     repeats[i] = outcome.statistics;
     repeats[i].fragments = repeats[0].fragments;
     job->light_ms += outcome.light_ms;
+    job->bound = outcome.bound;
   }
   return status;
 }

@@ -115,6 +115,8 @@ static conic_status report_counts(cli_json *json, const cli_render_job *job) {
   cli_json_close(json);
   if (job->shot.view.error_px > 0.0)
     cli_json_number(json, "error_px_asked", job->shot.view.error_px);
+  if (job->shot.planes >> CONIC_PLANE_BOUND & 1)
+    cli_json_number(json, "bound", job->bound);
   return report_source(json, job);
 }
 

@@ -136,6 +136,7 @@ typedef struct cli_render_job { /* NOLINT(clang-analyzer-optin.performance.Paddi
   /* What came of it. */
   conic_render_statistics statistics; /* of the last frame; times are medians where frames repeat */
   conic_camera last_camera;
+  double bound; /* of the last picture's plane; below 0: it has none */
   double first_frame_ms, camera_ms, frames_ms, light_ms, write_ms, hash_ms, total_ms;
   double begun_seconds;                /* when reading began */
   conic_cryptomatte_manifest manifest; /* of the last image */

@@ -187,6 +187,10 @@ int cli_scene_check(const cli_session *session, cli_scene_words *words, cli_rend
     answer = cli_usage("%s: it is of Gaussians, or of surfaces: leave the others out; conic render, verify, judge, "
                        "explain and gradient take both",
                        session->command);
+  if (answer == CLI_DONE && job->shot.planes >> CONIC_PLANE_BOUND & 1 &&
+      (job->shot.n_samples || job->progressive_path || !(job->shot.view.error_px > 0.0 || job->budget)))
+    answer = cli_usage("%s: --aov bound is of pictures by --error or --budget, without --accumulate and --progressive",
+                       session->command);
   job->shot.view.is_alone &=
       job->shot.view.error_px > 0.0 && !job->opening.cache && !(job->effects.asked & CLI_DRAWS_MORE);
   if (answer == CLI_DONE && job->abilities & CONIC_SOURCE_CLUSTERS && job->n_inputs != 1)

@@ -30,7 +30,7 @@ static int covering_plane(const conic_image *a, const conic_image *b) {
       CONIC_PLANE_POSITION,     CONIC_PLANE_MATTE_0,  CONIC_PLANE_MATTE_1,   CONIC_PLANE_MATTE_2,
       CONIC_PLANE_TRANSPARENCY, CONIC_PLANE_MEDIAN_Z, CONIC_PLANE_INVERSE_Z, CONIC_PLANE_LAST,
       CONIC_PLANE_DOUBT,        CONIC_PLANE_AO,       CONIC_PLANE_SHADOW,    CONIC_PLANE_SAMPLES,
-      CONIC_PLANE_VARIANCE,     CONIC_PLANE_MOTION};
+      CONIC_PLANE_VARIANCE,     CONIC_PLANE_MOTION,   CONIC_PLANE_BOUND};
   for (size_t i = 0; i < sizeof order / sizeof order[0]; i++)
     if (a->planes[order[i]] && b->planes[order[i]])
       return (int)order[i];

@@ -38,6 +38,7 @@ static const conic_plane_description descriptions[CONIC_N_PLANES] = {
     [CONIC_PLANE_SAMPLES] = {"samples", 1, 1, {"samples"}},
     [CONIC_PLANE_VARIANCE] = {"variance", 1, 0, {"variance"}},
     [CONIC_PLANE_MOTION] = {"motion", 4, 0, {"forward.u", "forward.v", "backward.u", "backward.v"}},
+    [CONIC_PLANE_BOUND] = {"bound", 1, 0, {"bound"}},
 };
 
 const conic_plane_description *conic_plane_describe(conic_plane plane) {

@@ -46,7 +46,9 @@ typedef enum conic_plane {
   CONIC_PLANE_MOTION = 21,   /* 4 floats, in pixels, x to the right and y down: from the pixel's sample to where what it
                                 shows is a frame later, and to where it was a frame before; 0 where nothing is, or it is
                                 behind the camera then. conic_shot_draw fills it */
-  CONIC_N_PLANES = 22
+  CONIC_PLANE_BOUND = 22, /* 1 float: no channel of rgba differs by more from the picture without an error and a budget;
+                             conic_shot_draw fills it */
+  CONIC_N_PLANES = 23
 } conic_plane;
 
 /* The planes that drawing fills, which are the first ones: their number, and their bits. */

@@ -108,7 +108,8 @@ typedef struct conic_shot_outcome {
   conic_accumulation_facts samples;   /* of means: the samples they are of */
   double noise;                       /* of means: how far they are from their end; below 0: not known */
   double focus_depth;                 /* of a lens: the depth at which it is sharp */
-  uint64_t reserved[8];
+  double bound;                       /* the greatest of the plane, where it was asked for; else below 0 */
+  uint64_t reserved[7];
 } conic_shot_outcome;
 
 /* Draws a shot of a source into the planes that `image` has; they should be the shot's, and its size is the camera's.

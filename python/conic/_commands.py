@@ -272,7 +272,7 @@ def render(scene: AnyScene, camera: Union[None, AnyCamera, Shot] = None, *, plan
     points, or a list of these.
     `camera`: a :class:`Camera`, or a file of cameras, of which `view` names one; without, all of the scene is framed.
     `planes`: of "rgba", "Z", "N", "albedo", "weight", "count", "id", "P", of Gaussian scenes "T", "medianZ",
-    "inverseZ", "last", "doubt"; "ao", "shadow"; "motion" (rgba and Z). `profile`: how a Gaussian scene is composited. `output`:
+    "inverseZ", "last", "doubt"; "ao", "shadow"; "motion", "bound" (rgba and Z). `profile`: how a Gaussian scene is composited. `output`:
     files to write, besides. `progress`: True, a function of a task's name and the share of it that is done, or a tqdm
     bar. All other options of `conic help render` are taken by their names.
 

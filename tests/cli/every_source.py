@@ -15,7 +15,7 @@ WORK = ["--memory 20", "--tolerate", "--progressive levels", "--occlusion on", "
         "--where x>-1e9"]
 BASES = ["", "--exposure auto", "--color-by height"]
 PLANES = ("rgba Z N albedo weight count id P cluster T medianZ inverseZ last doubt ao shadow samples variance "
-          "motion cryptomatte").split()
+          "motion bound cryptomatte").split()
 GAUSSIAN = {"T", "medianZ", "inverseZ", "last", "doubt"}
 SURFACE = {"albedo", "weight", "ao", "shadow", "cryptomatte"}
 FILES = {"--show overdraw:f.pfm": "--show", "--show legend:f.pfm": "legend", "--show boxes:f.pfm": "--show boxes",
@@ -101,7 +101,7 @@ def planes(kind, words):
     is_composited, n = kind == "Gaussians", 0
     for plane in PLANES:
         has = (plane in GAUSSIAN if plane in GAUSSIAN | SURFACE - {"cryptomatte"} and is_composited else
-               plane not in GAUSSIAN | {"samples", "variance"} | (set() if "hybrid" in kind or kind == ".chy" else {"cluster"}))
+               plane not in GAUSSIAN | {"samples", "variance", "bound"} | (set() if "hybrid" in kind or kind == ".chy" else {"cluster"}))
         out = "p.exr" if plane in ("id", "motion", "cryptomatte") else "p.pfm"
         if plane == "cryptomatte" and (kind in (".lpc", "EPT", "Potree", "COPC")):
             has = False

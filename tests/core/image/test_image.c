@@ -13,7 +13,7 @@ static void test_descriptions(void) {
       "rgba",   "Z",       "N",        "albedo",         "weight",         "count",
       "id",     "cluster", "P",        "CryptoObject00", "CryptoObject01", "CryptoObject02",
       "T",      "medianZ", "inverseZ", "last",           "doubt",          "ao",
-      "shadow", "samples", "variance", "motion"};
+      "shadow", "samples", "variance", "motion",         "bound"};
   for (int i = 0; i < CONIC_N_PLANES; i++) {
     const conic_plane_description *plane = conic_plane_describe((conic_plane)i);
     CHECK(plane && strcmp(plane->name, names[i]) == 0);

@@ -222,10 +222,10 @@ static void test_attributes(conic_context *context) {
 /* The channels stand in the header in the order of their names, with the types 0 (UINT) and 2 (FLOAT). */
 static void test_channels(conic_context *context) {
   static const char names[][12] = {
-      "A",          "B",          "G",       "N.X",     "N.Y",      "N.Z",       "P.X",       "P.Y",
-      "P.Z",        "R",          "T",       "Z",       "albedo.B", "albedo.G",  "albedo.R",  "ao",
-      "backward.u", "backward.v", "cluster", "count",   "doubt",    "forward.u", "forward.v", "id",
-      "inverseZ",   "last",       "medianZ", "samples", "shadow",   "variance",  "weight"};
+      "A",          "B",          "G",     "N.X",     "N.Y",      "N.Z",      "P.X",       "P.Y",
+      "P.Z",        "R",          "T",     "Z",       "albedo.B", "albedo.G", "albedo.R",  "ao",
+      "backward.u", "backward.v", "bound", "cluster", "count",    "doubt",    "forward.u", "forward.v",
+      "id",         "inverseZ",   "last",  "medianZ", "samples",  "shadow",   "variance",  "weight"};
   static const char *const integers[] = {"cluster", "count", "doubt", "id", "last", "samples"};
   conic_image image = random_image(context, 3, 3, EVERY_PLANE & ~CONIC_MATTE_PLANES);
   size_t n_bytes;
