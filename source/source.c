@@ -8,9 +8,10 @@
 
 /* Every kind, in the order in which they are asked; the last takes all remaining inputs. */
 static const conic_source_kind *const kinds[] = {
-    &conic_source_kind_levels,   &conic_source_kind_gaussians, &conic_source_kind_scenes,
-    &conic_source_kind_together, &conic_source_kind_layers,    &conic_source_kind_hybrid,
-    &conic_source_kind_patches,  &conic_source_kind_octree,    &conic_source_kind_drawing};
+    &conic_source_kind_levels, &conic_source_kind_level_scenes,   &conic_source_kind_gaussians,
+    &conic_source_kind_scenes, &conic_source_kind_level_together, &conic_source_kind_together,
+    &conic_source_kind_layers, &conic_source_kind_hybrid,         &conic_source_kind_patches,
+    &conic_source_kind_octree, &conic_source_kind_drawing};
 enum { N_KINDS = sizeof kinds / sizeof kinds[0] };
 
 CONIC_DEFINE_OPTIONS(conic_source_options, .cutoff = 1.5f, .n_neighbours = 20)
@@ -23,7 +24,12 @@ static int takes_inputs(const conic_source_kind *kind, const char *const *paths,
                         const conic_source_options *options) {
   const size_t wanted = kind->company == CONIC_SOURCE_ALIKE ? n : 1;
   size_t n_taken = 0;
+  size_t n_wanted = 0;
   if (kind->company == CONIC_SOURCE_SINGLE && n != 1)
+    return 0;
+  while (kind->wants && n_wanted < n && !kind->wants(paths[n_wanted]))
+    n_wanted++;
+  if (kind->wants && n_wanted == n)
     return 0;
   for (size_t i = 0; i < n && n_taken < wanted; i++)
     n_taken += (size_t)(kind->takes(paths[i], options) != 0);

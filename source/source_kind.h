@@ -31,6 +31,8 @@ typedef struct conic_source_kind {
 
   /* Whether an input becomes this kind; never null. The first kind of the list that says so takes the input. */
   int (*takes)(const char *path, const conic_source_options *options);
+  /* Where this is not null, one input at least is to be such. */
+  int (*wants)(const char *path);
   /* Fills in a zeroed source and its scale; of the times, only those other than reading. After a failure it is closed
    * as usual. Never null. */
   conic_status (*open)(conic_source *source, const char *const *paths, size_t n_paths,
@@ -110,7 +112,8 @@ struct conic_source {
 
 extern const conic_source_kind conic_source_kind_drawing, conic_source_kind_octree, conic_source_kind_layers,
     conic_source_kind_hybrid, conic_source_kind_patches, conic_source_kind_gaussians, conic_source_kind_scenes,
-    conic_source_kind_together, conic_source_kind_shared, conic_source_kind_levels;
+    conic_source_kind_together, conic_source_kind_shared, conic_source_kind_levels, conic_source_kind_level_scenes,
+    conic_source_kind_level_together;
 
 /* The mean of the normals by area, of points over land turned up; 0 where they say nothing, as of Gaussians. Across the
  * direction up, it is at least *least_slope of what has a front. Looks at the source once. Collective where it is

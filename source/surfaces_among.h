@@ -6,7 +6,8 @@
 /* The source of the surfaces that are drawn among a source's Gaussians, which stays its own; null: there are none. */
 conic_source *conic_source_surfaces(const conic_source *source);
 
-/* How surfaces are drawn for a picture of both: without a background, a pixel each of its samples. */
+/* How surfaces are drawn for a picture of both: without a background, a pixel each of its samples, and by the error
+ * that the source's Gaussians were chosen by. */
 typedef struct conic_surfaces_look {
   conic_camera camera;
   conic_render_options render;
@@ -14,8 +15,9 @@ typedef struct conic_surfaces_look {
   unsigned planes; /* that a picture with the given ones needs of them */
 } conic_surfaces_look;
 
-conic_surfaces_look conic_surfaces_look_of(const conic_camera *camera, const conic_render_options *render,
-                                           const conic_source_view *view, unsigned planes);
+conic_surfaces_look conic_surfaces_look_of(const conic_source *source, const conic_camera *camera,
+                                           const conic_render_options *render, const conic_source_view *view,
+                                           unsigned planes);
 
 /* Draws the surfaces of a source that has some by themselves, with the planes that a picture with the given ones needs
  * of them. The caller releases *surfaces, after a failure, too. Errors: as conic_source_draw. */

@@ -24,8 +24,7 @@ int conic_frame_is_one(const char *frame) {
   return find_frame_axes(frame, axes);
 }
 
-/* The rotation from one frame to another; 0 where there is none. */
-static int find_rotation(const char *from, const char *to, double rotation[3][3]) {
+int conic_gaussians_find_turn(const char *from, const char *to, double rotation[3][3]) {
   double a[3][3], b[3][3], *r = rotation[0];
   if (!find_frame_axes(from, a) || !find_frame_axes(to, b))
     return 0;
@@ -166,7 +165,7 @@ void conic_gaussians_find_up(const conic_gaussians *gaussians, double up[3]) {
 
 conic_status conic_gaussians_turn(conic_context *context, conic_gaussians *gaussians, const char *frame) {
   double rotation[3][3];
-  if (!find_rotation(gaussians->frame, frame, rotation))
+  if (!conic_gaussians_find_turn(gaussians->frame, frame, rotation))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "'%s' is no frame, or a mirror image of '%s'", frame,
                       gaussians->frame);
   if (memcmp(gaussians->frame, frame, sizeof gaussians->frame) != 0)

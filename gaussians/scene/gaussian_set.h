@@ -42,6 +42,9 @@ static inline double conic_gaussians_mean(const conic_gaussians *gaussians, int 
 /* The unit vector up: as the file says, or by the frame's letters. */
 void conic_gaussians_find_up(const conic_gaussians *gaussians, double up[3]);
 
+/* The rotation from one frame to another; returns 0 where there is none. */
+int conic_gaussians_find_turn(const char *from, const char *to, double rotation[3][3]);
+
 /* The arrays of one number a Gaussian that a set has; returns how many. */
 enum { CONIC_MOST_GAUSSIAN_COLUMNS = 15 };
 int conic_gaussians_list_columns(const conic_gaussians *gaussians, float **columns[CONIC_MOST_GAUSSIAN_COLUMNS]);

@@ -12,7 +12,7 @@
 static const uint32_t dropped_bits = 0x7ff;
 
 /* A float of a merged row, rounded to nearest. */
-static float rounded(double value) {
+float conic_blend_rounded(double value) {
   return conic_float_of_bits((conic_bits_of_float((float)value) + (dropped_bits + 1) / 2) & ~dropped_bits);
 }
 
@@ -20,6 +20,11 @@ static float rounded(double value) {
  * by the mean of the squares. */
 static double mean_area(const double s2[3]) {
   return sqrt((s2[0] * s2[1] + s2[0] * s2[2] + s2[1] * s2[2]) / 3.0);
+}
+
+/* The optical depth at the middle; that of what is opaque is not without end. */
+static double depth_of(double opacity) {
+  return -conic_logarithm(1.0 - fmin(opacity, 0.99));
 }
 
 void conic_blend_take(const float *row, int sh_degree, conic_blend *blend) {
@@ -49,12 +54,12 @@ void conic_blend_take(const float *row, int sh_degree, conic_blend *blend) {
   blend->area = mean_area(s2);
   for (int c = 0; c < 3; c++)
     blend->color[c] = fmax(0.0, 0.5 + CONIC_SH_CONSTANT * (double)row[CONIC_BLEND_HARMONICS + c]);
-  blend->bound.reach = CONIC_BLEND_DEVIATIONS * (float)sqrt(fmax(s2[0], fmax(s2[1], s2[2])));
-}
-
-/* The optical depth at the middle; that of what is opaque is not without end. */
-static double depth_of(double opacity) {
-  return -conic_logarithm(1.0 - fmin(opacity, 0.99));
+  const double depth = depth_of((double)row[CONIC_BLEND_OPACITY]);
+  blend->parts = (conic_blend_parts){
+      .depth = (float)depth,
+      .edge = (float)(depth * sqrt(2.0 / 3.0 * (s2[0] + s2[1] + s2[2]))),
+      .reach = CONIC_BLEND_DEVIATIONS * (float)sqrt(fmax(s2[0], fmax(s2[1], s2[2]))),
+      .tint = {row[CONIC_BLEND_HARMONICS], row[CONIC_BLEND_HARMONICS + 1], row[CONIC_BLEND_HARMONICS + 2]}};
 }
 
 static double weight_of(const conic_blend *part) {
@@ -83,13 +88,13 @@ static double put_shape(const double covariance[6], float *row) {
   conic_cross(axes[0], axes[1], axes[2]);
   for (int k = 0; k < 3; k++) {
     s2[k] = fmax(s2[k], 0.0);
-    row[CONIC_BLEND_SCALE + k] = rounded(sqrt(s2[k]));
+    row[CONIC_BLEND_SCALE + k] = conic_blend_rounded(sqrt(s2[k]));
     for (int axis = 0; axis < 3; axis++)
       rows[axis][k] = axes[k][axis];
   }
   conic_gaussians_find_quaternion((const double(*)[3])rows, q);
   for (int k = 0; k < 4; k++)
-    row[CONIC_BLEND_ROTATION + k] = rounded(q[k]);
+    row[CONIC_BLEND_ROTATION + k] = conic_blend_rounded(q[k]);
   return mean_area(s2);
 }
 
@@ -117,7 +122,27 @@ void conic_blend_merge(const conic_blend *parts, size_t n, int sh_degree, float 
   }
   find_covariance(parts, n, mean, weight, covariance);
   const double area = put_shape(covariance, row);
-  row[CONIC_BLEND_OPACITY] = area > 0.0 ? rounded(1.0 - conic_gaussian_exp(-depth / area)) : 0.0f;
+  row[CONIC_BLEND_OPACITY] = area > 0.0 ? conic_blend_rounded(1.0 - conic_gaussian_exp(-depth / area)) : 0.0f;
   for (size_t k = 0; k < n_harmonics; k++)
-    row[CONIC_BLEND_HARMONICS + k] = rounded(harmonics[k] / weight);
+    row[CONIC_BLEND_HARMONICS + k] = conic_blend_rounded(harmonics[k] / weight);
+}
+
+void conic_blend_dilate(const conic_blend_parts *parts, double variance, float *row) {
+  double s2[3];
+  for (int k = 0; k < 3; k++)
+    s2[k] = (double)row[CONIC_BLEND_SCALE + k] * (double)row[CONIC_BLEND_SCALE + k];
+  const double own = depth_of((double)row[CONIC_BLEND_OPACITY]) * mean_area(s2), depth = (double)parts->depth;
+  /* the square of a mean area is that of what it was, and the trace's and 1 times the variance and its square */
+  const double all =
+      sqrt(own * own + (double)(parts->edge * parts->edge) * variance + depth * depth * variance * variance);
+  for (int k = 0; k < 3; k++)
+    s2[k] += variance;
+  const double area = mean_area(s2), added = all > own ? 1.0 - own / all : 0.0;
+  if (!(area > 0.0))
+    return;
+  row[CONIC_BLEND_OPACITY] = (float)(1.0 - conic_gaussian_exp(-all / area));
+  for (int c = 0; c < 3; c++) {
+    float *color = &row[CONIC_BLEND_HARMONICS + c];
+    *color += (float)added * (parts->tint[c] - *color);
+  }
 }

@@ -14,22 +14,26 @@ enum { CONIC_BLEND_MOST_FLOATS = CONIC_BLEND_HARMONICS + CONIC_MOST_HARMONICS };
 /* What a node may be made of at most. */
 enum { CONIC_BLEND_MOST_PARTS = 12 };
 
-/* By how much what stands for some Gaussians changes a picture, beside the Gaussians themselves. */
-typedef struct conic_blend_bound {
-  float light;   /* the change of a colour or of the opacity, times the area where it is, in square world units */
-  float most;    /* the greatest change at one place */
-  float reach;   /* all of the Gaussians lie so far from the mean at most */
-  float ceiling; /* no colour of them, from the directions that are tried, is above it; nor is any change */
-} conic_blend_bound;
+/* What is known of the Gaussians that one stands for. */
+typedef struct conic_blend_parts {
+  float light;       /* by how much the one changes a colour or the opacity, times the area where, in square units */
+  float depth, edge; /* sums of their optical depths, and of these times the root of their projections' traces */
+  float reach;       /* they lie so far from the mean at most */
+  float tint[3];     /* their mean harmonics of degree 0, by optical depth */
+} conic_blend_parts;
+enum { CONIC_BLEND_PARTS = 7 };
 
 typedef struct conic_blend {
   const float *row;
   double mean[3], covariance[6]; /* xx, xy, xz, yy, yz, zz */
   double area;                   /* about the mean of its projections' |Σ|^½ over directions */
   double color[3];               /* of degree 0 */
-  conic_blend_bound bound;
+  conic_blend_parts parts;
   int is_drawn; /* 0: a number of it is none, and no picture shows it */
 } conic_blend;
+
+/* A float with so few bits as merged rows have. */
+float conic_blend_rounded(double value);
 
 /* Of a Gaussian as it came. */
 void conic_blend_take(const float *row, int sh_degree, conic_blend *blend);
@@ -43,5 +47,9 @@ void conic_blend_merge(const conic_blend *parts, size_t n, int sh_degree, float 
 conic_status conic_blend_group(conic_context *context, const conic_blend *blends, size_t n, size_t n_wanted,
                                uint32_t *group, size_t *n_groups);
 
-/* Fills in the bound of what stands for n parts, which have theirs. */
-void conic_blend_find_bound(const conic_blend *parts, size_t n, int sh_degree, conic_blend *whole);
+/* Fills in what is known of n parts, which have theirs, for what stands for them. */
+void conic_blend_find_parts(const conic_blend *parts, size_t n, int sh_degree, conic_blend *whole);
+
+/* Makes a row what its parts are together where a variance is added to each one's projection: many that are small are
+ * more than one that is large then. */
+void conic_blend_dilate(const conic_blend_parts *parts, double variance, float *row);

@@ -35,10 +35,6 @@ static screen screen_of(int i, int degree) {
   return s;
 }
 
-static void raise_to(float *most, float value) {
-  *most = value > *most ? value : *most;
-}
-
 static trace trace_of(const screen *s, const conic_blend *b, const double from[3], double *root) {
   trace t = {.opacity = b->is_drawn ? b->row[CONIC_BLEND_OPACITY] : 0.0f};
   double d[3], xx = conic_quadratic_form(b->covariance, s->right, s->right),
@@ -67,10 +63,9 @@ static trace trace_of(const screen *s, const conic_blend *b, const double from[3
 }
 
 /* Places on the screen, and what is seen there: light, and what is left of it. A multiple of the lanes of vectors. */
-enum { MOST_PLACES = (SIDE * SIDE + CONIC_BLEND_MOST_PARTS + 7) / 8 * 8 };
+enum { MOST_PLACES = (SIDE * SIDE + 7) / 8 * 8 };
 
 typedef struct seen_places {
-  size_t n;
   float x[MOST_PLACES], y[MOST_PLACES], left[MOST_PLACES], sum[3][MOST_PLACES];
 } seen_places;
 
@@ -98,21 +93,17 @@ static void order_by_depth(trace *parts, size_t n) {
     }
 }
 
-/* A square of the whole's own axes (L of Σ = L·Lᵀ turns the unit square into them), and the parts' middles. */
-static void lay_out(const trace *whole, double root, const trace *parts, size_t n, seen_places *at) {
+/* A square of the whole's own axes: L of Σ = L·Lᵀ turns the unit square into them. */
+static void lay_out(const trace *whole, double root, seen_places *at) {
   const double xx = (double)whole->yy * root * root, xy = -(double)whole->xy * root * root;
   const double l_xx = sqrt(xx), l_yx = xy / l_xx, l_yy = root / l_xx;
   memset(at, 0, sizeof *at);
   for (int row = 0; row < SIDE; row++)
     for (int column = 0; column < SIDE; column++) {
       const double u = (column + 0.5) * step - half_width, v = (row + 0.5) * step - half_width;
-      at->x[at->n] = (float)(l_xx * u);
-      at->y[at->n++] = (float)(l_yx * u + l_yy * v);
+      at->x[row * SIDE + column] = (float)(l_xx * u);
+      at->y[row * SIDE + column] = (float)(l_yx * u + l_yy * v);
     }
-  for (size_t i = 0; i < n; i++) {
-    at->x[at->n] = (float)parts[i].x;
-    at->y[at->n++] = (float)parts[i].y;
-  }
   for (size_t i = 0; i < MOST_PLACES; i++)
     at->left[i] = 1.0f;
 }
@@ -126,22 +117,18 @@ static void look_from(const screen *s, const conic_blend *parts, size_t n, conic
   for (size_t i = 0; i < n; i++)
     traces[i] = trace_of(s, &parts[i], whole->mean, &unused);
   order_by_depth(traces, n);
-  lay_out(&own, root, traces, n, &at);
+  lay_out(&own, root, &at);
   alone = at;
   lay_down(&own, &alone);
   for (size_t i = 0; i < n; i++)
     lay_down(&traces[i], &at);
-  for (size_t i = 0; i < at.n; i++) {
+  for (size_t i = 0; i < (size_t)SIDE * SIDE; i++) {
     float change = fabsf(at.left[i] - alone.left[i]);
-    for (int c = 0; c < 3; c++) {
-      raise_to(&change, fabsf(at.sum[c][i] - alone.sum[c][i]));
-      raise_to(&whole->bound.ceiling, at.sum[c][i]);
-      raise_to(&whole->bound.ceiling, alone.sum[c][i]);
-    }
-    sum += i < (size_t)SIDE * SIDE ? (double)change : 0.0;
-    raise_to(&whole->bound.most, change);
+    for (int c = 0; c < 3; c++)
+      change = fmaxf(change, fabsf(at.sum[c][i] - alone.sum[c][i]));
+    sum += (double)change;
   }
-  raise_to(&whole->bound.light, (float)(sum * step * step * root));
+  whole->parts.light = fmaxf(whole->parts.light, (float)(sum * step * step * root));
 }
 
 /* A float that is no less and has few bits. */
@@ -150,23 +137,26 @@ static float rounded_up(double value) {
   return value > 0.0 ? conic_float_of_bits((bits + 0x1fff) & ~(uint32_t)0xfff) : 0.0f;
 }
 
-void conic_blend_find_bound(const conic_blend *parts, size_t n, int sh_degree, conic_blend *whole) {
-  double light = 0.0, most = 0.0, reach = (double)whole->bound.reach;
-  whole->bound = (conic_blend_bound){.ceiling = 1.0f};
+void conic_blend_find_parts(const conic_blend *parts, size_t n, int sh_degree, conic_blend *whole) {
+  double light = 0.0, depth = 0.0, edge = 0.0, tint[3] = {0.0, 0.0, 0.0}, reach = (double)whole->parts.reach;
   for (size_t i = 0; i < n; i++) {
+    const conic_blend_parts *p = &parts[i].parts;
     double d[3];
     conic_subtract(parts[i].mean, whole->mean, d);
-    light += (double)parts[i].bound.light;
-    most += (double)parts[i].bound.most;
-    reach = fmax(reach, conic_length(d) + (double)parts[i].bound.reach);
-    raise_to(&whole->bound.ceiling, parts[i].bound.ceiling);
+    light += (double)p->light;
+    depth += (double)p->depth;
+    edge += (double)p->edge;
+    for (int c = 0; c < 3; c++)
+      tint[c] += (double)(p->depth * p->tint[c]);
+    reach = fmax(reach, conic_length(d) + (double)p->reach);
   }
+  whole->parts = (conic_blend_parts){.depth = rounded_up(depth), .edge = rounded_up(edge), .reach = rounded_up(reach)};
+  for (int c = 0; c < 3; c++)
+    whole->parts.tint[c] = depth > 0.0 ? conic_blend_rounded(tint[c] / depth) : 0.0f;
   if (n > 1 && whole->is_drawn)
     for (int i = 0; i < DIRECTIONS; i++) {
       const screen s = screen_of(i, sh_degree);
       look_from(&s, parts, n, whole);
     }
-  whole->bound.light = rounded_up(safety * (double)whole->bound.light + light);
-  whole->bound.most = rounded_up(fmin(safety * (double)whole->bound.most + most, (double)whole->bound.ceiling));
-  whole->bound.reach = rounded_up(reach);
+  whole->parts.light = rounded_up(safety * (double)whole->parts.light + light);
 }

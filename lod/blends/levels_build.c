@@ -45,7 +45,7 @@ conic_status conic_levels_builder_open(conic_context *context, const char *path,
 void conic_levels_builder_abandon(conic_levels_builder *builder) {
   if (!builder)
     return;
-  conic_memory_release_these(builder->context, builder->cloud.rows, builder->cloud.bounds, builder->cloud.numbers);
+  conic_memory_release_these(builder->context, builder->cloud.rows, builder->cloud.parts, builder->cloud.numbers);
   conic_levels_tree_destroy(builder->tree);
   conic_spool_end(&builder->rows);
   conic_output_abandon(builder->output);

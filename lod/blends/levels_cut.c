@@ -11,6 +11,9 @@ enum { DRAWING_BYTES = 320, WORDS_BESIDE = 3 };
 /* Pixels that filters of a picture reach out of an outline. */
 static const double margin_px = 4.0;
 
+/* No more pixels of a veil are looked at to each side. */
+static const double most_around = 8.0;
+
 typedef struct chosen {
   uint32_t cloud, i;
 } chosen;
@@ -39,6 +42,20 @@ static float number_of(const conic_levels *l, uint32_t cloud, size_t column, siz
   return conic_float_of_bits(l->clouds[cloud].columns[column * l->entries[cloud].n + i]);
 }
 
+/* Of what is merged. */
+static conic_blend_parts parts_of(const conic_levels *l, uint32_t cloud, size_t i) {
+  float values[CONIC_BLEND_PARTS];
+  conic_blend_parts parts;
+  for (size_t k = 0; k < CONIC_BLEND_PARTS; k++)
+    values[k] = number_of(l, cloud, conic_levels_row(&l->header) + k, i);
+  memcpy(&parts, values, sizeof parts);
+  return parts;
+}
+
+static int is_merged(const conic_levels *l, const chosen *one) {
+  return one->cloud < l->shape.n_clouds - l->header.n_leaves && parts_of(l, one->cloud, one->i).light > 0.0f;
+}
+
 /* Whether a ball can be in sight; *scale gets how many pixels a length in it has at most, infinite where it reaches the
  * eye. */
 static int look_at(const level_cutting *c, const float mean[3], double reach, double *scale) {
@@ -53,14 +70,45 @@ static int look_at(const level_cutting *c, const float mean[3], double reach, do
   return !c->is_plain || (!conic_viewpoint_misses(&c->from, p, reach) && p[2] + reach > 0.0);
 }
 
-/* The light that is elsewhere, in pixels. */
-static double light_of(double light, double scale) {
-  return light == 0.0 ? 0.0 : light * scale * scale;
+/* The most that is left of the light anywhere within a deviation of what reaches so far, and may be merged. */
+static double find_left(const level_cutting *c, const float mean[3], double reach) {
+  const conic_levels_veil *veil = c->wish->veil;
+  double p[3], most = 0.0;
+  if (!veil)
+    return 1.0;
+  conic_viewpoint_move_floats(&c->from, mean, p);
+  const conic_camera *camera = &veil->camera;
+  const double near = reach / (double)CONIC_BLEND_DEVIATIONS, z = p[2] - near;
+  if (!(z > 0.0))
+    return 1.0;
+  const double x = p[0] / p[2] * camera->fx + camera->cx, y = p[1] / p[2] * camera->fy + camera->cy;
+  const double around = fmin(near / z * fmax(camera->fx, camera->fy), most_around);
+  const int first[2] = {(int)fmax(x - around, 0.0), (int)fmax(y - around, 0.0)};
+  if (!(x + around >= 0.0 && y + around >= 0.0 && x - around < camera->width && y - around < camera->height))
+    return 1.0;
+  for (int row = first[1]; row < camera->height && row <= y + around; row++)
+    for (int column = first[0]; column < camera->width && column <= x + around && most < 1.0; column++) {
+      const float *depths = veil->depths + ((size_t)row * (size_t)camera->width + (size_t)column) * CONIC_VEIL_HALVES;
+      double left = 1.0;
+      for (int k = 0; k < CONIC_VEIL_HALVES && (double)depths[k] <= z; k++)
+        left *= 0.5;
+      most = fmax(most, left);
+    }
+  return most;
 }
 
-static conic_status choose_one(level_cutting *c, uint32_t cloud, size_t i, int is_leaf) {
+/* The light that is elsewhere, in pixels. */
+static double light_of(const level_cutting *c, const conic_blend_parts *parts, const float mean[3], double scale) {
+  const double light = (double)parts->light;
+  if (light == 0.0)
+    return 0.0;
+  const double all = light * scale * scale;
+  return all > c->error ? all * find_left(c, mean, (double)parts->reach) : all;
+}
+
+static conic_status choose_one(level_cutting *c, uint32_t cloud, size_t i) {
   const chosen one = {cloud, (uint32_t)i};
-  c->n_merged += !is_leaf && number_of(c->levels, cloud, conic_levels_row(&c->levels->header), i) > 0.0f;
+  c->n_merged += (uint64_t)is_merged(c->levels, &one);
   return conic_memory_append(c->levels->context, &c->list, &c->n, &c->room, &one, sizeof one);
 }
 
@@ -70,7 +118,7 @@ static conic_status look_into(level_cutting *c, uint32_t cloud, const unsigned c
                               unsigned *parts, uint64_t *n_open) {
   const conic_levels *l = c->levels;
   const conic_levels_loaded *loaded = &l->clouds[cloud];
-  const size_t n = l->entries[cloud].n, n_row = conic_levels_row(&l->header);
+  const size_t n = l->entries[cloud].n;
   const uint32_t *link = loaded->columns + (conic_levels_columns(&l->header, is_leaf) - 1) * n;
   conic_status status = CONIC_OK;
   for (size_t i = 0; i < n && status == CONIC_OK; i++) {
@@ -79,17 +127,18 @@ static conic_status look_into(level_cutting *c, uint32_t cloud, const unsigned c
     if (above && !above[link[i] & CONIC_LEVELS_PARENT])
       continue;
     const float mean[3] = {number_of(l, cloud, 0, i), number_of(l, cloud, 1, i), number_of(l, cloud, 2, i)};
-    float reach = is_leaf ? 0.0f : number_of(l, cloud, n_row + 2, i);
+    const conic_blend_parts below = is_leaf ? (conic_blend_parts){.light = 0.0f} : parts_of(l, cloud, i);
+    float reach = below.reach;
     for (size_t axis = 0; axis < 3 && is_leaf; axis++)
       reach = fmaxf(reach, CONIC_BLEND_DEVIATIONS * number_of(l, cloud, CONIC_BLEND_SCALE + axis, i));
     if (!look_at(c, mean, (double)reach, &scale))
       continue;
-    if (!is_leaf && light_of((double)number_of(l, cloud, n_row, i), scale) > c->error) {
+    if (!is_leaf && light_of(c, &below, mean, scale) > c->error) {
       loaded->is_open[i] = 1;
       *parts |= link[i] >> CONIC_LEVELS_PARTS_BIT;
       ++*n_open;
     } else
-      status = choose_one(c, cloud, i, is_leaf);
+      status = choose_one(c, cloud, i);
   }
   return status;
 }
@@ -166,17 +215,28 @@ static conic_status order_chosen(const level_cutting *c, conic_radix_item *items
   return conic_radix_sort(l->context, items, c->n, 34);
 }
 
-static void fill_row(const conic_levels *l, const chosen *one, size_t at, conic_gaussians *set) {
+static void fill_row(const level_cutting *c, const chosen *one, size_t at, conic_gaussians *set) {
+  const conic_levels *l = c->levels;
   const size_t n = conic_harmonics_of_degree(set->sh_degree);
-  for (size_t axis = 0; axis < 3; axis++) {
-    set->position[axis][at] = number_of(l, one->cloud, axis, one->i);
-    set->scale[axis][at] = number_of(l, one->cloud, CONIC_BLEND_SCALE + axis, one->i);
+  float row[CONIC_BLEND_MOST_FLOATS];
+  for (size_t k = 0; k < CONIC_BLEND_HARMONICS + n; k++)
+    row[k] = number_of(l, one->cloud, k, one->i);
+  if (c->wish->dilation > 0.0 && is_merged(l, one)) {
+    double p[3];
+    conic_viewpoint_move_floats(&c->from, row, p);
+    const double length = p[2] / c->focal; /* of a pixel there */
+    const conic_blend_parts parts = parts_of(l, one->cloud, one->i);
+    if (length > 0.0)
+      conic_blend_dilate(&parts, c->wish->dilation * length * length, row);
+  }
+  for (size_t k = 0; k < 3; k++) {
+    set->position[k][at] = row[k];
+    set->scale[k][at] = row[CONIC_BLEND_SCALE + k];
   }
   for (size_t k = 0; k < 4; k++)
-    set->rotation[k][at] = number_of(l, one->cloud, CONIC_BLEND_ROTATION + k, one->i);
-  set->opacity[at] = number_of(l, one->cloud, CONIC_BLEND_OPACITY, one->i);
-  for (size_t k = 0; k < n; k++)
-    set->sh[at * n + k] = number_of(l, one->cloud, CONIC_BLEND_HARMONICS + k, one->i);
+    set->rotation[k][at] = row[CONIC_BLEND_ROTATION + k];
+  set->opacity[at] = row[CONIC_BLEND_OPACITY];
+  memcpy(set->sh + at * n, row + CONIC_BLEND_HARMONICS, n * sizeof *row);
 }
 
 static conic_status fill_set(const level_cutting *c, int is_all, conic_gaussians *set) {
@@ -195,21 +255,10 @@ static conic_status fill_set(const level_cutting *c, int is_all, conic_gaussians
     set->is_antialiased = (l->header.flags & CONIC_LEVELS_ANTIALIASED) != 0;
     set->is_linear = (l->header.flags & CONIC_LEVELS_LINEAR) != 0;
     for (size_t i = 0; i < c->n; i++)
-      fill_row(l, &c->list[items[i].value], i, set);
+      fill_row(c, &c->list[items[i].value], i, set);
   }
   conic_memory_release(l->context, items);
   return status;
-}
-
-/* The greatest change of a pixel by one that is merged. */
-static double find_bound(const level_cutting *c) {
-  const conic_levels *l = c->levels;
-  const size_t n_row = conic_levels_row(&l->header);
-  double bound = 0.0;
-  for (size_t i = 0; i < c->n; i++)
-    if (c->list[i].cloud < l->shape.n_clouds - l->header.n_leaves)
-      bound = fmax(bound, (double)number_of(l, c->list[i].cloud, n_row + 1, c->list[i].i));
-  return fmin(bound, c->error);
 }
 
 /* Takes every Gaussian of a level, whatever is in sight. */
@@ -220,7 +269,7 @@ static conic_status take_level(level_cutting *c, int level) {
     const uint32_t cloud = l->shape.first[level] + k;
     status = conic_levels_load(l, &cloud, 1);
     for (size_t i = 0; i < l->entries[cloud].n && status == CONIC_OK; i++)
-      status = choose_one(c, cloud, i, level + 1 == l->shape.n_levels);
+      status = choose_one(c, cloud, i);
   }
   return status;
 }
@@ -238,7 +287,6 @@ static conic_status choose_some(level_cutting *c, conic_levels_cut *cut) {
     status = find_error(c, wish->budget ? 0.0 : wish->error);
   }
   cut->error = c->error;
-  cut->bound = find_bound(c);
   return status;
 }
 

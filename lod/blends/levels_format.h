@@ -39,14 +39,14 @@ typedef struct conic_levels_shape {
 
 void conic_levels_find_shape(uint32_t n_leaves, conic_levels_shape *shape);
 
-/* A cloud has columns of 32 bits a Gaussian: its row, then of what came its number, of what is merged the bound's
- * three, and last its link: the number of what stands for it in the cloud above, and which children have parts of it
- * from bit 16 up. */
+/* A cloud has columns of 32 bits a Gaussian: its row, then of what came its number, of what is merged what is known of
+ * its parts, and last its link: the number of what stands for it in the cloud above, and which children have parts of
+ * it from bit 16 up. */
 static inline size_t conic_levels_row(const conic_levels_header *header) {
   return CONIC_BLEND_HARMONICS + conic_harmonics_of_degree((int)header->sh_degree);
 }
 static inline size_t conic_levels_columns(const conic_levels_header *header, int is_leaf) {
-  return conic_levels_row(header) + (is_leaf ? 2 : 4);
+  return conic_levels_row(header) + (is_leaf ? 1 : CONIC_BLEND_PARTS) + 1;
 }
 enum { CONIC_LEVELS_PARENT = 0xffff, CONIC_LEVELS_PARTS_BIT = 16 };
 

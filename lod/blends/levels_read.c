@@ -99,9 +99,9 @@ static int is_sound(const conic_levels *l, uint32_t i, const uint32_t *columns) 
       return 0;
     if (is_leaf && columns[n_row * n + k] >= l->header.n)
       return 0;
-    for (size_t c = n_row; !is_leaf && c < n_row + 3; c++) {
-      const float bound = conic_float_of_bits(columns[c * n + k]);
-      if (!(bound >= 0.0f && bound - bound == 0.0f))
+    for (size_t c = 0; !is_leaf && c < CONIC_BLEND_PARTS; c++) {
+      const float value = conic_float_of_bits(columns[(n_row + c) * n + k]);
+      if (value - value != 0.0f || (c < CONIC_BLEND_PARTS - 3 && value < 0.0f)) /* all but the tint */
         return 0;
     }
   }
@@ -180,13 +180,13 @@ conic_status conic_levels_read(conic_context *context, const char *path, conic_g
   return status;
 }
 
-/* Whether no Gaussian of a cloud has a bound above that of what stands for it. */
+/* Whether no Gaussian of a cloud has sums above those of what stands for it. */
 static int is_bounded(const conic_levels *l, uint32_t above, uint32_t i) {
   const size_t n = l->entries[i].n, n_above = l->entries[above].n, n_row = conic_levels_row(&l->header);
   const uint32_t *own = l->clouds[i].columns, *over = l->clouds[above].columns;
   const uint32_t *link = own + (conic_levels_columns(&l->header, is_leaf_cloud(l, i)) - 1) * n;
   for (size_t k = 0; k < n && !is_leaf_cloud(l, i); k++)
-    for (size_t c = n_row; c < n_row + 2; c++)
+    for (size_t c = n_row; c < n_row + 3; c++) /* light, depth, edge */
       if (conic_float_of_bits(own[c * n + k]) >
           conic_float_of_bits(over[c * n_above + (link[k] & CONIC_LEVELS_PARENT)]))
         return 0;

@@ -39,19 +39,31 @@ void conic_levels_drop(conic_levels *levels, uint32_t cloud);
 /* How many Gaussians can be drawn in the memory that there is. */
 uint64_t conic_levels_most(const conic_levels *levels);
 
+/* So many are read whole for framing, as other scenes are; of more, what stands at the root tells where they are. */
+enum { CONIC_LEVELS_MOST_WHOLE = 1 << 18 };
+
 /* What is taken: the Gaussians of a cut; all as they came, whatever a camera sees, in any memory; or the root's. */
 typedef enum conic_levels_part { CONIC_LEVELS_CUT, CONIC_LEVELS_ALL, CONIC_LEVELS_ROOT } conic_levels_part;
+
+/* What is left of the light, by pixel of a picture that may be small: the depths from which it is no more than a half,
+ * a quarter and so on; infinite: nowhere. */
+enum { CONIC_VEIL_HALVES = 8 };
+typedef struct conic_levels_veil {
+  conic_camera camera; /* a pinhole where the picture's is */
+  float *depths;
+} conic_levels_veil;
 
 typedef struct conic_levels_wish {
   conic_levels_part part;
   conic_camera camera;
   double error;    /* 0: all, or as the budget and memory allow */
   uint64_t budget; /* 0: none */
+  double dilation; /* px² that are added to variances, where what is added is not taken from the opacity */
+  const conic_levels_veil *veil; /* null: all light is left everywhere */
 } conic_levels_wish;
 
 typedef struct conic_levels_cut {
   double error;         /* kept */
-  double bound;         /* of a pixel, by all that is merged */
   uint64_t n, n_merged; /* drawn */
   int is_all, is_short; /* all that there is; is_short: the memory made it coarser than it was to be */
 } conic_levels_cut;

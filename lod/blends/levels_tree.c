@@ -42,12 +42,12 @@ typedef struct cloud_joinings {
 
 conic_status conic_levels_cloud_allocate(conic_context *context, size_t n, size_t n_row, conic_levels_cloud *cloud) {
   cloud->n = n;
-  return conic_memory_allocate_these(context, CONIC_ROOM(cloud->rows, n * n_row), CONIC_ROOM(cloud->bounds, n),
+  return conic_memory_allocate_these(context, CONIC_ROOM(cloud->rows, n * n_row), CONIC_ROOM(cloud->parts, n),
                                      CONIC_ROOM(cloud->numbers, n));
 }
 
 static void release_cloud(conic_context *context, conic_levels_cloud *cloud) {
-  conic_memory_release_these(context, cloud->rows, cloud->bounds, cloud->numbers);
+  conic_memory_release_these(context, cloud->rows, cloud->parts, cloud->numbers);
   memset(cloud, 0, sizeof *cloud);
 }
 
@@ -64,12 +64,10 @@ static conic_status pack_cloud(const conic_levels_tree *tree, const tree_hand *h
     const uint32_t parent = group ? group[i] : 0;
     for (size_t k = 0; k < n_row; k++)
       columns[k * n + i] = conic_bits_of_float(cloud->rows[i * n_row + k]);
-    const conic_blend_bound *b = &cloud->bounds[i];
-    const uint32_t rest[2][4] = {{conic_bits_of_float(b->light), conic_bits_of_float(b->most),
-                                  conic_bits_of_float(b->reach), parent | cloud->numbers[i] << CONIC_LEVELS_PARTS_BIT},
-                                 {cloud->numbers[i], parent}};
-    for (size_t k = n_row; k < n_columns; k++)
-      columns[k * n + i] = rest[is_leaf][k - n_row];
+    const uint32_t *words = is_leaf ? &cloud->numbers[i] : (const uint32_t *)&cloud->parts[i];
+    for (size_t k = n_row; k + 1 < n_columns; k++)
+      columns[k * n + i] = words[k - n_row];
+    columns[(n_columns - 1) * n + i] = is_leaf ? parent : parent | cloud->numbers[i] << CONIC_LEVELS_PARTS_BIT;
   }
   if (status == CONIC_OK) {
     *n_bytes = conic_levels_pack(hand->zstd, columns, n_columns, n, planes, *bytes);
@@ -92,7 +90,7 @@ static void take_children(const conic_levels_tree *tree, const cloud_joining *j,
       const conic_levels_cloud *cloud = &j->children[c];
       conic_blend *b = &room->blends[at];
       conic_blend_take(cloud->rows + i * tree->n_row, (int)tree->header.sh_degree, b);
-      b->bound = cloud->bounds[i];
+      b->parts = cloud->parts[i];
       room->child[at] = (uint32_t)c;
     }
 }
@@ -128,8 +126,8 @@ static void merge_groups(const conic_levels_tree *tree, cloud_joining *j, const 
     else
       conic_blend_merge(room->sorted, n, degree, row);
     conic_blend_take(row, degree, &whole);
-    conic_blend_find_bound(room->sorted, n, degree, &whole);
-    j->made.bounds[g] = whole.bound;
+    conic_blend_find_parts(room->sorted, n, degree, &whole);
+    j->made.parts[g] = whole.parts;
   }
 }
 
@@ -279,7 +277,7 @@ conic_status conic_levels_tree_add(conic_levels_tree *tree, conic_levels_cloud *
   for (size_t i = 0; i < cloud->n; i++) {
     conic_blend blend;
     conic_blend_take(cloud->rows + i * tree->n_row, (int)tree->header.sh_degree, &blend);
-    cloud->bounds[i] = blend.bound;
+    cloud->parts[i] = blend.parts;
   }
   leaves->waiting[leaves->n_waiting++] = *cloud;
   memset(cloud, 0, sizeof *cloud);

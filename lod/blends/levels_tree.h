@@ -7,7 +7,7 @@
 typedef struct conic_levels_cloud {
   size_t n;
   float *rows;
-  conic_blend_bound *bounds;
+  conic_blend_parts *parts;
   uint32_t *numbers; /* of Gaussians as they came; of what is merged, which children have parts */
 } conic_levels_cloud;
 

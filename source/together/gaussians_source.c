@@ -4,10 +4,10 @@
 #include "conic/opencl.h"
 #include "core/base/vectors.h"
 #include "core/image/image_common.h"
+#include "core/splats/gaussian_profile.h"
 #include "gaussians/draw/gaussian_parts.h"
 #include "gaussians/draw/surfaces_join.h"
 #include "gaussians/scene/gaussian_set.h"
-#include "lod/blends/levels_read.h"
 #include "raster/frame/samples.h"
 #include "raster/frame/statistics.h"
 #include "source/surfaces_among.h"
@@ -92,6 +92,11 @@ void conic_gaussians_source_close(conic_source *source) {
     conic_gaussians_release(source->context, &g->gaussians);
   conic_gaussians_release(source->context, &g->rest);
   conic_source_close(g->surfaces);
+  for (size_t i = 0; i < g->n_inputs; i++) {
+    if (!g->inputs[i].is_lent)
+      conic_gaussians_release(source->context, &g->inputs[i].set);
+    conic_levels_close(g->inputs[i].levels);
+  }
   conic_memory_release(source->context, g->inputs);
 }
 
@@ -221,8 +226,9 @@ static void tell_drawing(const gaussians_source *g, uint64_t n_pairs, uint64_t n
 
 /* --- surfaces among them --- */
 
-conic_surfaces_look conic_surfaces_look_of(const conic_camera *camera, const conic_render_options *render,
-                                           const conic_source_view *view, unsigned planes) {
+conic_surfaces_look conic_surfaces_look_of(const conic_source *source, const conic_camera *camera,
+                                           const conic_render_options *render, const conic_source_view *view,
+                                           unsigned planes) {
   const unsigned ids = 1u << CONIC_PLANE_ID | 1u << CONIC_PLANE_LAST;
   conic_surfaces_look look = {conic_samples_camera(camera, view->samples, 0, camera->height), *render, *view,
                               1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z |
@@ -230,6 +236,10 @@ conic_surfaces_look conic_surfaces_look_of(const conic_camera *camera, const con
                                   (planes & ids ? 1u << CONIC_PLANE_ID : 0)};
   look.render.has_background = 0;
   look.view.samples = 1;
+  if (((const gaussians_source *)source)->choose) {
+    look.view.error_px = source->choice.error_px;
+    look.view.budget = 0;
+  }
   return look;
 }
 
@@ -266,7 +276,7 @@ static conic_status begin_gaussian_windows(conic_source_windows *w) {
   if ((long)w->camera.width * w->samples > 65535 || (long)w->camera.height * w->samples > 65535)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: so many samples make more than 65535 a side",
                       w->source->name);
-  conic_status status = g->choose ? g->choose(w->source, &w->camera) : CONIC_OK;
+  conic_status status = g->choose && !g->surfaces ? g->choose(w->source, &w->camera) : CONIC_OK;
   w->step = CONIC_GAUSSIAN_TILE;
   w->band_rows = w->camera.height;
   g->options.isa = w->render.isa;
@@ -280,11 +290,15 @@ static conic_status begin_gaussian_windows(conic_source_windows *w) {
 }
 
 static conic_status begin_windows_of_both(conic_source_windows *w) {
-  conic_status status = begin_gaussian_windows(w);
-  conic_source *surfaces = ((const gaussians_source *)w->source)->surfaces;
+  const gaussians_source *g = (const gaussians_source *)w->source;
+  conic_source *surfaces = g->surfaces;
+  conic_status status = surfaces && g->choose ? g->choose(w->source, &w->camera) : CONIC_OK;
+  if (status == CONIC_OK)
+    status = begin_gaussian_windows(w);
   if (!surfaces || status != CONIC_OK)
     return status;
-  const conic_surfaces_look look = conic_surfaces_look_of(&w->camera, &w->render, &w->source->view, w->planes);
+  const conic_surfaces_look look =
+      conic_surfaces_look_of(w->source, &w->camera, &w->render, &w->source->view, w->planes);
   conic_source_windows *own = &((own_windows *)w->own)->surfaces;
   status = conic_source_windows_begin(surfaces, w->renderer, &look.camera, &look.render, &look.view, look.planes, own);
   w->step = own->step > w->step ? own->step : w->step; /* both are powers of two */
@@ -402,12 +416,17 @@ conic_status conic_source_draw_among(conic_source *source, conic_renderer *rende
                                      const conic_render_options *render, const conic_source_view *view,
                                      const conic_surfaces_drawer *drawer, conic_image *image,
                                      conic_render_statistics *statistics) {
-  const conic_surfaces_look look = conic_surfaces_look_of(camera, render, view, conic_image_planes(image));
+  gaussians_source *g = (gaussians_source *)source;
   conic_render_statistics of_surfaces;
   conic_image surfaces;
   memset(&of_surfaces, 0, sizeof of_surfaces);
-  conic_status status = conic_image_allocate(source->context, look.camera.width, look.camera.height,
-                                             look.planes | drawer->planes, &surfaces);
+  memset(&surfaces, 0, sizeof surfaces);
+  source->view = *view;
+  conic_status status = g->choose ? g->choose(source, camera) : CONIC_OK;
+  const conic_surfaces_look look = conic_surfaces_look_of(source, camera, render, view, conic_image_planes(image));
+  if (status == CONIC_OK)
+    status = conic_image_allocate(source->context, look.camera.width, look.camera.height, look.planes | drawer->planes,
+                                  &surfaces);
   if (status == CONIC_OK)
     status = drawer->draw(drawer->cookie, &look.camera, &look.render, &look.view, &surfaces, &of_surfaces);
   if (status == CONIC_OK)
@@ -421,7 +440,7 @@ conic_status conic_source_draw_among(conic_source *source, conic_renderer *rende
 conic_status conic_source_draw_surfaces(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
                                         const conic_render_options *render, const conic_source_view *view,
                                         unsigned planes, conic_image *surfaces) {
-  const conic_surfaces_look look = conic_surfaces_look_of(camera, render, view, planes);
+  const conic_surfaces_look look = conic_surfaces_look_of(source, camera, render, view, planes);
   conic_status status =
       conic_image_allocate(source->context, look.camera.width, look.camera.height, look.planes, surfaces);
   return status == CONIC_OK ? conic_source_draw(conic_source_surfaces(source), renderer, &look.camera, &look.render,
@@ -452,9 +471,38 @@ conic_status conic_gaussians_source_draw(conic_source *source, conic_renderer *r
                         : composite_whole(source, renderer, camera, render, view->samples, NULL, image, statistics);
 }
 
+conic_levels_wish conic_gaussians_source_wish(const conic_gaussians_source *source, const conic_camera *camera) {
+  const conic_source_view *view = &source->base.view;
+  const conic_profile_row *row = conic_profile_row_of(source->options.profile);
+  const double samples = (double)view->samples;
+  return (conic_levels_wish){.camera = *camera,
+                             .error = view->error_px,
+                             .budget = view->budget,
+                             .dilation = row->compensation_least < 0.0 ? row->dilation / (samples * samples) : 0.0};
+}
+
+void conic_levels_tell(const conic_among_input *inputs, size_t n, conic_facts *facts) {
+  uint64_t n_clouds = 0, n_read = 0, n_received = 0, n_drawn = 0, n_merged = 0;
+  for (size_t i = 0; i < n; i++) {
+    const conic_levels *levels = inputs[i].levels;
+    if (!levels)
+      continue;
+    n_drawn += inputs[i].cut.n;
+    n_merged += inputs[i].cut.n_merged;
+    n_clouds += levels->shape.n_clouds;
+    n_read += levels->n_read;
+    n_received += conic_ranges_received(levels->ranges);
+  }
+  if (n_clouds)
+    CONIC_ADD_FACTS(facts, CONIC_OBJECT("gaussian_levels"), CONIC_COUNT("gaussians", n_drawn),
+                    CONIC_COUNT("gaussians_merged", n_merged), CONIC_COUNT("clouds", n_clouds),
+                    CONIC_COUNT("clouds_read", n_read), CONIC_COUNT("bytes_received", n_received), CONIC_END);
+}
+
 void conic_gaussians_source_tell(const conic_source *source, conic_facts *facts) {
   const gaussians_source *g = (const gaussians_source *)source;
   CONIC_ADD_FACTS(facts,
                   conic_fact_text(CONIC_FACT_TEXT, "profile", "%s", conic_gaussian_profile_name(g->options.profile)),
                   CONIC_COUNT("entries", g->drawn.entries));
+  conic_levels_tell(g->inputs, g->n_inputs, facts);
 }

@@ -2,12 +2,19 @@
 #pragma once
 
 #include "conic/gaussian_render.h"
+#include "lod/blends/levels_read.h"
+#include "source/input_places.h"
 #include "source/source_kind.h"
 
 /* An input of several. */
 typedef struct conic_among_input {
   int is_gaussian;
   uint32_t first_id; /* of its Gaussians; of a surface its number among the surfaces' inputs */
+  conic_place place;
+  conic_levels *levels; /* of a scene in levels; else null */
+  conic_levels_cut cut; /* of these */
+  conic_gaussians set;  /* of each scene, where one of them is in levels: what is drawn of it, where it stands */
+  int is_lent;          /* the set is a caller's */
 } conic_among_input;
 
 typedef struct conic_gaussians_source {
@@ -34,6 +41,17 @@ void conic_gaussians_source_close(conic_source *source);
 conic_status conic_gaussians_source_draw(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
                                          const conic_render_options *render, const conic_source_view *view,
                                          conic_image *image, conic_render_statistics *statistics);
+/* What a picture of levels by the source's view and profile wishes. */
+conic_levels_wish conic_gaussians_source_wish(const conic_gaussians_source *source, const conic_camera *camera);
+
+/* conic_levels_choose with a veil, for cameras whose sides are known. Errors: as there, and of drawing. */
+conic_status conic_levels_choose_seen(conic_levels *levels, const conic_levels_wish *wish,
+                                      const conic_gaussian_options *options, conic_gaussians *set,
+                                      conic_levels_cut *cut);
+
+/* Tells of n inputs, as far as they are in levels. */
+void conic_levels_tell(const conic_among_input *inputs, size_t n, conic_facts *facts);
+
 void conic_gaussians_source_tell(const conic_source *source, conic_facts *facts);
 
 extern const conic_source_windowing conic_gaussians_windowing;

@@ -1,11 +1,7 @@
 /* A Gaussian scene in levels: each picture takes what it shows of it, and that is drawn as any scene is. */
 #include <inttypes.h>
 
-#include "lod/blends/levels_read.h"
 #include "source/together/gaussians_source.h"
-
-/* So many are read whole for framing, as other scenes are; of more, what stands at the root tells where they are. */
-enum { MOST_WHOLE = 1 << 18 };
 
 typedef struct levels_source {
   conic_gaussians_source g;
@@ -22,7 +18,7 @@ static conic_status choose_levels(levels_source *s, const conic_levels_wish *wis
   if (s->cut.is_all && wish->error == 0.0 && !wish->budget)
     return CONIC_OK;
   conic_gaussians_release(s->g.base.context, set);
-  conic_status status = conic_levels_choose(s->levels, wish, set, &s->cut);
+  conic_status status = conic_levels_choose_seen(s->levels, wish, &s->g.options, set, &s->cut);
   s->g.base.choice = (conic_source_choice){.error_px = s->cut.error, .is_all = s->cut.is_all};
   if (status == CONIC_OK && s->cut.is_short && wish->error == 0.0) /* else the program says so */
     conic_log(s->g.base.context, CONIC_LOG_WARNING,
@@ -33,8 +29,9 @@ static conic_status choose_levels(levels_source *s, const conic_levels_wish *wis
 }
 
 static conic_status choose_for_picture(conic_source *source, const conic_camera *camera) {
-  const conic_levels_wish wish = {.camera = *camera, .error = source->view.error_px, .budget = source->view.budget};
-  return choose_levels((levels_source *)source, &wish);
+  levels_source *s = (levels_source *)source;
+  const conic_levels_wish wish = conic_gaussians_source_wish(&s->g, camera);
+  return choose_levels(s, &wish);
 }
 
 static conic_status open_levels(conic_source *source, const char *const *paths, size_t n_paths,
@@ -47,8 +44,8 @@ static conic_status open_levels(conic_source *source, const char *const *paths, 
   if (status != CONIC_OK)
     return status;
   const conic_levels_header *h = &s->levels->header;
-  const conic_levels_wish wish = {.part =
-                                      options->is_whole || h->n <= MOST_WHOLE ? CONIC_LEVELS_ALL : CONIC_LEVELS_ROOT};
+  const conic_levels_wish wish = {.part = options->is_whole || h->n <= CONIC_LEVELS_MOST_WHOLE ? CONIC_LEVELS_ALL
+                                                                                               : CONIC_LEVELS_ROOT};
   status = choose_levels(s, &wish);
   if (status == CONIC_OK)
     status = conic_gaussians_source_measure(&s->g);
@@ -66,10 +63,8 @@ static void close_levels(conic_source *source) {
 static void tell_levels_rest(const conic_source *source, conic_facts *facts) {
   const levels_source *s = (const levels_source *)source;
   conic_gaussians_source_tell(source, facts);
-  CONIC_ADD_FACTS(facts, CONIC_OBJECT("gaussian_levels"), CONIC_COUNT("gaussians", s->cut.n),
-                  CONIC_COUNT("gaussians_merged", s->cut.n_merged), CONIC_NUMBER("change", s->cut.bound),
-                  CONIC_COUNT("clouds", s->levels->shape.n_clouds), CONIC_COUNT("clouds_read", s->levels->n_read),
-                  CONIC_COUNT("bytes_received", conic_ranges_received(s->levels->ranges)), CONIC_END);
+  const conic_among_input input = {.levels = s->levels, .cut = s->cut};
+  conic_levels_tell(&input, 1, facts);
 }
 
 static conic_status tell_levels_file(conic_source *source, conic_facts *facts) {

@@ -6,7 +6,6 @@
 #include "core/splats/near.h"
 #include "gaussians/scene/gaussian_set.h"
 #include "lod/blends/levels_read.h"
-#include "source/input_places.h"
 #include "source/moved_drawing.h"
 #include "source/together/gaussians_source.h"
 
@@ -86,30 +85,88 @@ static conic_status place_scene(conic_context *context, const conic_place *place
   return CONIC_OK;
 }
 
-/* Reads the inputs that are scenes. */
-static conic_status read_scenes(conic_gaussians_source *g, const char *const *paths, const conic_place *places) {
-  conic_context *context = g->base.context;
-  conic_gaussians *sets = conic_memory_allocate_zeroed(context, g->n_inputs, sizeof *sets);
-  int *are_lent = conic_memory_allocate_zeroed(context, g->n_inputs, sizeof *are_lent);
-  conic_status status = sets && are_lent ? CONIC_OK : CONIC_ERROR_MEMORY;
+static conic_status choose_levels_among(conic_source *source, const conic_camera *camera);
+
+/* The sets of the inputs that are scenes, as one list. */
+static conic_status join_inputs(conic_gaussians_source *g, conic_gaussians *all) {
+  conic_gaussians *sets = conic_memory_allocate(g->base.context, g->n_inputs, sizeof *sets);
   size_t n = 0, count = 0;
-  for (size_t i = 0; i < g->n_inputs && status == CONIC_OK; i++) {
+  if (!sets)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < g->n_inputs; i++) {
     if (!g->inputs[i].is_gaussian)
       continue;
     g->inputs[i].first_id = (uint32_t)count;
-    status = read_scene(context, paths[i], &sets[n], &are_lent[n]);
+    count += g->inputs[i].set.count;
+    sets[n++] = g->inputs[i].set;
+  }
+  conic_status status = join_scenes(g->base.context, sets, n, all);
+  conic_memory_release(g->base.context, sets);
+  return status;
+}
+
+static const conic_among_input *first_scene(const conic_gaussians_source *g) {
+  const conic_among_input *first = g->inputs;
+  while (!first->is_gaussian)
+    first++;
+  return first;
+}
+
+/* Takes what a picture shows of a scene in levels, in the first one's frame. */
+static conic_status take_levels(conic_gaussians_source *g, conic_among_input *input, const conic_levels_wish *wish) {
+  const char *frame = input == first_scene(g) ? input->levels->header.frame : first_scene(g)->set.frame;
+  char kept[4];
+  memcpy(kept, frame, sizeof kept); /* which may be the set's own */
+  conic_gaussians_release(g->base.context, &input->set);
+  conic_status status = conic_levels_choose_seen(input->levels, wish, &g->options, &input->set, &input->cut);
+  return status == CONIC_OK ? place_scene(g->base.context, &input->place, kept, &input->set, &input->is_lent) : status;
+}
+
+static conic_status open_input(conic_gaussians_source *g, conic_among_input *input, const char *path,
+                               const conic_source_options *options) {
+  conic_context *context = g->base.context;
+  if (!conic_levels_is_file(path) || conic_loan_find(context, path, "gaussians")) {
+    conic_status status = read_scene(context, path, &input->set, &input->is_lent);
+    return status == CONIC_OK
+               ? place_scene(context, &input->place, first_scene(g)->set.frame, &input->set, &input->is_lent)
+               : status;
+  }
+  conic_status status = conic_levels_open(context, path, options->access, &input->levels);
+  if (status != CONIC_OK)
+    return status;
+  const conic_levels_wish wish = {.part = options->is_whole || input->levels->header.n <= CONIC_LEVELS_MOST_WHOLE
+                                              ? CONIC_LEVELS_ALL
+                                              : CONIC_LEVELS_ROOT};
+  g->base.choice.is_all &= wish.part == CONIC_LEVELS_ALL;
+  return take_levels(g, input, &wish);
+}
+
+static void release_sets(conic_gaussians_source *g) {
+  for (size_t i = 0; i < g->n_inputs; i++)
+    if (!g->inputs[i].is_lent)
+      conic_gaussians_release(g->base.context, &g->inputs[i].set);
+}
+
+/* Reads the inputs that are scenes. */
+static conic_status read_scenes(conic_gaussians_source *g, const char *const *paths,
+                                const conic_source_options *options) {
+  conic_context *context = g->base.context;
+  conic_status status = CONIC_OK;
+  int has_levels = 0;
+  g->base.choice.is_all = 1;
+  for (size_t i = 0; i < g->n_inputs && status == CONIC_OK; i++) {
+    if (!g->inputs[i].is_gaussian)
+      continue;
+    status = open_input(g, &g->inputs[i], paths[i], options);
     if (status == CONIC_OK)
-      status = place_scene(context, &places[i], sets[0].frame, &sets[n], &are_lent[n]);
-    if (status == CONIC_OK)
-      status = check_alike(context, &sets[0], &sets[n], paths[i]);
-    count += sets[n++].count;
+      status = check_alike(context, &first_scene(g)->set, &g->inputs[i].set, paths[i]);
+    has_levels |= g->inputs[i].levels != NULL;
   }
   if (status == CONIC_OK)
-    status = join_scenes(context, sets, n, &g->gaussians);
-  for (size_t i = 0; i < n; i++)
-    if (!are_lent[i])
-      conic_gaussians_release(context, &sets[i]);
-  conic_memory_release_these(context, sets, are_lent);
+    status = join_inputs(g, &g->gaussians);
+  if (!has_levels)
+    release_sets(g);
+  g->choose = has_levels ? choose_levels_among : NULL;
   return status;
 }
 
@@ -179,9 +236,11 @@ static conic_status open_together(conic_source *source, const char *const *paths
   conic_place *places = conic_memory_allocate(source->context, n_paths, sizeof *places);
   conic_status status =
       places ? conic_places_read(source->context, options->place, n_paths, places) : CONIC_ERROR_MEMORY;
-  if (status == CONIC_OK)
-    status = read_scenes(g, paths, places);
+  for (size_t i = 0; i < n_paths && status == CONIC_OK; i++)
+    g->inputs[i].place = places[i];
   conic_memory_release(source->context, places);
+  if (status == CONIC_OK)
+    status = read_scenes(g, paths, options);
   if (status == CONIC_OK)
     status = conic_gaussians_source_measure(g);
   if (status == CONIC_OK)
@@ -214,6 +273,78 @@ static conic_status open_scene(conic_source *source, const char *const *paths, s
   if (status == CONIC_OK)
     status = place_scene(source->context, &place, g->gaussians.frame, &g->gaussians, &g->is_lent);
   return status == CONIC_OK ? conic_gaussians_source_measure(g) : status;
+}
+
+/* --- levels --- */
+
+/* The camera as the file of an input sees it; lengths there may be others, and pixels are not. */
+static conic_camera camera_of(const conic_gaussians_source *g, const conic_among_input *input,
+                              const conic_camera *camera) {
+  conic_camera own = *camera;
+  const conic_place *place = &input->place;
+  double turn[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+  const double scale = place->is_moved ? place->scale : 1.0;
+  conic_gaussians_find_turn(input->levels->header.frame, first_scene(g)->set.frame, turn);
+  for (int row = 0; row < 3; row++) {
+    const double *from = camera->cam_from_world[row];
+    double placed[3] = {from[0], from[1], from[2]}, shift = from[3];
+    for (int axis = 0; axis < 3 && place->is_moved; axis++) {
+      placed[axis] =
+          from[0] * place->rotation[0][axis] + from[1] * place->rotation[1][axis] + from[2] * place->rotation[2][axis];
+      shift += from[axis] * place->shift[axis];
+    }
+    for (int axis = 0; axis < 3; axis++)
+      own.cam_from_world[row][axis] = placed[0] * turn[0][axis] + placed[1] * turn[1][axis] + placed[2] * turn[2][axis];
+    own.cam_from_world[row][3] = shift / scale;
+  }
+  return own;
+}
+
+/* What is left of a budget for the one scene in levels. */
+static conic_status share_budget(const conic_gaussians_source *g, uint64_t *budget) {
+  size_t n_levels = 0;
+  uint64_t others = 0;
+  for (size_t i = 0; i < g->n_inputs; i++) {
+    n_levels += g->inputs[i].levels != NULL;
+    others += g->inputs[i].levels ? 0 : g->inputs[i].set.count;
+  }
+  if (*budget && (n_levels > 1 || others >= *budget))
+    return conic_fail(g->base.context, CONIC_ERROR_UNSUPPORTED,
+                      n_levels > 1 ? "%s: a budget is of one scene in levels; --error is of several"
+                                   : "%s: the scenes without levels are more than the budget",
+                      g->base.name);
+  *budget -= *budget ? others : 0;
+  return CONIC_OK;
+}
+
+static conic_status choose_levels_among(conic_source *source, const conic_camera *camera) {
+  conic_gaussians_source *g = (conic_gaussians_source *)source;
+  conic_levels_wish wish = conic_gaussians_source_wish(g, camera);
+  conic_source_choice choice = {.is_all = 1};
+  conic_gaussians all;
+  if (source->choice.is_all && wish.error == 0.0 && !wish.budget)
+    return CONIC_OK;
+  if (g->rest.count)
+    return conic_fail(source->context, CONIC_ERROR_UNSUPPORTED, "%s: what moves is drawn whole: not by an error",
+                      source->name);
+  conic_status status = share_budget(g, &wish.budget);
+  for (size_t i = 0; i < g->n_inputs && status == CONIC_OK; i++) {
+    conic_among_input *input = &g->inputs[i];
+    if (!input->levels)
+      continue;
+    wish.camera = camera_of(g, input, camera);
+    status = take_levels(g, input, &wish);
+    choice.error_px = fmax(choice.error_px, input->cut.error);
+    choice.is_all &= input->cut.is_all;
+  }
+  if (status == CONIC_OK)
+    status = join_inputs(g, &all);
+  if (status != CONIC_OK)
+    return status;
+  conic_gaussians_release(source->context, &g->gaussians);
+  g->gaussians = all;
+  source->choice = choice;
+  return CONIC_OK;
 }
 
 /* --- what moves --- */
@@ -331,18 +462,22 @@ static conic_status move_together(conic_source *source, const conic_source_pose 
   return CONIC_OK;
 }
 
-#define KIND_OF_GAUSSIANS(its_abilities, its_company, its_open, its_input_of, its_move)                                \
+#define KIND_OF_GAUSSIANS(its_abilities, its_company, its_open, its_input_of, its_move, its_wants)                     \
   {                                                                                                                    \
-    .size = sizeof(conic_gaussians_source), .abilities = (its_abilities), .company = (its_company),                    \
-    .takes = conic_gaussians_source_takes, .open = (its_open), .close = conic_gaussians_source_close,                  \
-    .draw = conic_gaussians_source_draw, .windowing = &conic_gaussians_windowing, .input_of = (its_input_of),          \
-    .move = (its_move), .tell_rest = conic_gaussians_source_tell                                                       \
+    .size = sizeof(conic_gaussians_source), .abilities = CONIC_SOURCE_COMPOSITES | (its_abilities),                    \
+    .company = (its_company), .takes = conic_gaussians_source_takes, .wants = (its_wants), .open = (its_open),         \
+    .close = conic_gaussians_source_close, .draw = conic_gaussians_source_draw,                                        \
+    .windowing = &conic_gaussians_windowing, .input_of = (its_input_of), .move = (its_move),                           \
+    .tell_rest = conic_gaussians_source_tell                                                                           \
   }
+#define KIND_OF_MANY(its_abilities, its_company, its_wants)                                                            \
+  KIND_OF_GAUSSIANS(its_abilities, its_company, open_together, find_input, move_together, its_wants)
 
 const conic_source_kind conic_source_kind_gaussians =
-                            KIND_OF_GAUSSIANS(CONIC_SOURCE_COMPOSITES, CONIC_SOURCE_SINGLE, open_scene, NULL, NULL),
-                        conic_source_kind_scenes = KIND_OF_GAUSSIANS(CONIC_SOURCE_COMPOSITES, CONIC_SOURCE_ALIKE,
-                                                                     open_together, find_input, move_together),
-                        conic_source_kind_together =
-                            KIND_OF_GAUSSIANS(CONIC_SOURCE_COMPOSITES | CONIC_SOURCE_MIXES, CONIC_SOURCE_MANY,
-                                              open_together, find_input, move_together);
+                            KIND_OF_GAUSSIANS(0, CONIC_SOURCE_SINGLE, open_scene, NULL, NULL, NULL),
+                        conic_source_kind_scenes = KIND_OF_MANY(0, CONIC_SOURCE_ALIKE, NULL),
+                        conic_source_kind_level_scenes =
+                            KIND_OF_MANY(CONIC_SOURCE_CHOOSES, CONIC_SOURCE_ALIKE, conic_levels_is_file),
+                        conic_source_kind_together = KIND_OF_MANY(CONIC_SOURCE_MIXES, CONIC_SOURCE_MANY, NULL),
+                        conic_source_kind_level_together = KIND_OF_MANY(CONIC_SOURCE_MIXES | CONIC_SOURCE_CHOOSES,
+                                                                        CONIC_SOURCE_MANY, conic_levels_is_file);

@@ -300,7 +300,7 @@ if [[ $has_zstd -eq 1 ]]; then
   run 0 make gaussians -n 3000 --degree 1 -o balls.spz
   write layer-gaussians layer_gaussians layer balls.spz -o balls.lpc
   write info-gaussian-levels info_gaussian_levels info balls.lpc --check
-  write render-gaussian-levels render render balls.lpc --profile exact -o balls.exr --error 2 --size 64x64
+  write render-gaussian-levels render render balls.lpc --profile exact -o balls.exr --error 2 --aov rgba,bound --size 64x64
   run 0 layer placed.ply -o placed.lpc
   write info-placed-layers info_layers info placed.lpc
   write render-layers render_layers render knot.lpc -o layers.exr --error 4 --size 256x256

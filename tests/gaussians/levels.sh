@@ -32,7 +32,45 @@ run 0 render again.lpc --profile exact --size 96x96 --error 2 -o other.pfm --thr
 cmp -s coarse.pfm other.pfm || fail "threads change a bit"
 run 0 render balls.lpc balls.ply --profile exact --size 64x64 -o both.pfm
 
+# Wherever it stands, as much of it is drawn; a picture is no farther from the whole one than it says.
 run 0 make sphere -n 100 -o sphere.ply
+place() { # JSON ARGUMENTS: of balls.lpc
+  run 0 render balls.lpc --profile exact --size 96x96 --error 2 --json "$1" -o placed.pfm "${@:2}"
+}
+place here.json
+for turned in 2,0,0,5,0,2,0,-1,0,0,2,3 "0,0,1,0,0,1,0,0,-1,0,0,0 --azimuth 300"; do
+  # shellcheck disable=SC2086
+  place there.json --place balls.lpc=$turned
+  n=$(number gaussians there.json) is=$(number gaussians here.json) # of a turned one floats differ
+  ((50 * (n > is ? n - is : is - n) <= is)) || fail "placed by $turned: $n Gaussians, not $is"
+done
+run 0 render balls.lpc sphere.ply --profile exact --size 96x96 --budget 700 -o few.pfm --json few.json
+(($(number gaussians few.json) <= 700 && $(number gaussians_merged few.json) > 0)) || fail "--budget among surfaces"
+run 0 verify balls.lpc sphere.ply --profile exact --size 64x64 --budget 700 --samples 1
+run 4 render balls.lpc balls.ply --profile exact --size 96x96 --budget 700 -o no.pfm
+run 2 render balls.lpc --profile exact --size 96x96 --aov bound -o no.pfm
+run 2 render balls.lpc --profile exact --size 96x96 --error 1 --accumulate 2 --aov bound -o no.pfm
+bounded() { # SIZE ARGUMENTS: no pixel is off by more than the plane says, and no plane says more than the JSON
+  run 0 render "${@:2}" --size "$1" --aov rgba,bound --json bound.json -o bound.pfm
+  local without=() argument
+  for argument in "${@:2}"; do
+    [[ $argument == --error=* || $argument == --budget=* ]] || without+=("$argument")
+  done
+  run 0 render "${without[@]}" --size "$1" -o whole.pfm
+  run 1 diff bound.pfm whole.pfm --json off.json
+  python3 - bound.json off.json << 'END' || fail "${*:2}: the bound does not hold"
+import json, sys
+bound, off = json.load(open(sys.argv[1]))["bound"], json.load(open(sys.argv[2]))
+sys.exit(not 0 < off["max_abs"] <= bound + 1e-7)
+END
+}
+for profile in exact gsplat-1.6 khr-2026; do
+  for azimuth in 0 130; do
+    bounded 64x64 balls.lpc --profile $profile --azimuth $azimuth --error=0.5
+    bounded 64x64 balls.lpc sphere.ply --profile $profile --azimuth $azimuth --budget=700
+  done
+done
+
 run 2 layer balls.ply sphere.ply -o no.lpc
 grep -q 'payload plain' err || fail "mixed inputs: $(cat err)"
 run 2 layer balls.ply -o no.lpc --quantum 1
