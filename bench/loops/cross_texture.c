@@ -44,7 +44,7 @@ static void place_block(uint64_t *state, double texel, conic_texture_places *p) 
   uint64_t shape = *state;
   for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
     uint64_t same = shape;
-    size_t column = l / CONIC_BLOCK_EDGE;
+    size_t column = (size_t)l / CONIC_BLOCK_EDGE;
     double dx = size * (double)column, dy = size * (double)(l % CONIC_BLOCK_EDGE);
     if (is_coherent)
       place_pixel(&same, size, x + dx, y + dy, l, p);

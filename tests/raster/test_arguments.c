@@ -176,7 +176,7 @@ static void test_unusable_cameras(fixture *f) {
       bad.lens = CONIC_LENS_RADIAL;
       break;
     default:
-      bad.reserved[6] = 1;
+      bad.reserved_word = 1;
     }
     conic_contributions *contributions;
     conic_reference reference;
