@@ -4,6 +4,7 @@
 #include "core/files/input.h"
 #include "core/files/number.h"
 #include "core/splats/clip.h"
+#include "core/splats/coordinate.h"
 #include "core/splats/point_values.h"
 #include "core/splats/splats_gather.h"
 
@@ -149,7 +150,7 @@ static int is_in_polygons(const cli_cut_region *region, double x, double y) {
 static int is_in_region(const cli_cut_region *region, const conic_splats *batch, size_t i) {
   double place[3];
   for (int axis = 0; axis < 3; axis++) {
-    place[axis] = batch->origin[axis] + (double)batch->position[axis][i];
+    place[axis] = conic_coordinate_of(batch->origin[axis], batch->position[axis][i]);
     if (!(place[axis] >= region->low[axis] && place[axis] <= region->high[axis]))
       return 0;
   }

@@ -226,7 +226,7 @@ static void search_around(neighbour_search *s, const conic_neighbours_around *ar
   for (size_t i = 0; i < around->n; i += 2) {
     size_t first = i + 1 < around->n || i == 0 ? i : i - 1; /* the last pair may have one again */
     const box_pair both = box_distances2((const float(*)[6])around->boxes + first, s->query);
-    for (size_t k = i - first; k < 2; k++) {
+    for (size_t k = i - first; k < 2 && first + k < around->n; k++) { /* of one leaf, the other box is none */
       leaves[n] = around->leaves[first + k];
       near2[n] = both[k];
       n += both[k] <= s->limit2;

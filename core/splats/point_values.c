@@ -1,6 +1,7 @@
 #include "core/splats/point_values.h"
 
 #include "core/splats/columns.h"
+#include "core/splats/coordinate.h"
 
 conic_status conic_point_values_reserve(conic_context *context, conic_point_values *values, size_t room) {
   for (size_t k = 0; k < values->n_columns && room > values->room; k++)
@@ -23,7 +24,7 @@ static void fill_place_columns(conic_splats *points, conic_point_values *values)
   for (size_t k = 0; k < values->n_columns; k++) {
     int axis = -1 - values->source[k];
     for (size_t i = 0; i < points->count && axis >= 0; i++)
-      values->value[k][i] = points->origin[axis] + (double)points->position[axis][i];
+      values->value[k][i] = conic_coordinate_of(points->origin[axis], points->position[axis][i]);
   }
 }
 

@@ -636,7 +636,8 @@ class Outcome(ctypes.Structure):
         ("samples", AccumulationFacts),
         ("noise", c_double),
         ("focus_depth", c_double),
-        ("reserved", c_uint64 * 8),
+        ("bound", c_double),
+        ("reserved", c_uint64 * 7),
     ]
 
 

@@ -100,8 +100,9 @@ def stays(kind, words):
 def planes(kind, words):
     is_composited, n = kind == "Gaussians", 0
     for plane in PLANES:
-        has = (plane in GAUSSIAN if plane in GAUSSIAN | SURFACE - {"cryptomatte"} and is_composited else
-               plane not in GAUSSIAN | {"samples", "variance", "bound"} | (set() if "hybrid" in kind or kind == ".chy" else {"cluster"}))
+        has = ("--error" in words if plane == "bound" else
+               plane in GAUSSIAN if plane in GAUSSIAN | SURFACE - {"cryptomatte"} and is_composited else
+               plane not in GAUSSIAN | {"samples", "variance"} | (set() if "hybrid" in kind or kind == ".chy" else {"cluster"}))
         out = "p.exr" if plane in ("id", "motion", "cryptomatte") else "p.pfm"
         if plane == "cryptomatte" and (kind in (".lpc", "EPT", "Potree", "COPC")):
             has = False

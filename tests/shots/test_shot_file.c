@@ -170,6 +170,10 @@ static void fill_rows(const conic_shot_rows *rows, char *value) {
     conic_camera *camera = (conic_camera *)value;
     memcpy(camera->cam_from_world, turned, sizeof turned);
     camera->kind %= CONIC_CAMERA_CUBE; /* which has another shape */
+    for (int axis = 0; axis < 3; axis++) {
+      camera->turn[axis] = camera->shutter ? 0.1 * (axis + 1) : 0.0;
+      camera->shift[axis] = camera->shutter ? camera->shift[axis] : 0.0;
+    }
   }
   if (strcmp(rows->name, "render") == 0)
     ((conic_render_options *)value)->passes = draw_real() < 0.5 ? 1 : 3;
@@ -181,6 +185,7 @@ static void fill_rows(const conic_shot_rows *rows, char *value) {
   if (strcmp(rows->name, "shot") == 0) {
     ((conic_shot *)value)->n_samples++;
     ((conic_shot *)value)->view.samples = 1;
+    ((conic_shot *)value)->planes &= ~(1u << CONIC_PLANE_BOUND); /* which no mean has */
   }
 }
 

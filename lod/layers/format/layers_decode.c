@@ -2,6 +2,7 @@
 
 #include "core/base/byte_order.h"
 #include "core/base/color.h"
+#include "core/splats/coordinate.h"
 #include "lod/layers/format/layers_code.h"
 #include "lod/layers/format/layers_key.h"
 
@@ -180,7 +181,7 @@ static void store_chosen(const conic_layers_decoder *decoder, size_t i, conic_la
   for (size_t k = 0; k < conic_filter_names(choice->filter); k++) {
     int by = choice->filtered_by[k], axis = CONIC_LAYERS_BY_X - by;
     values[k] = by >= 0 ? conic_layers_number_get(&list[by], bytes_of_attribute(decoder, i, by))
-                        : decoder->header.origin[axis] + (double)cloud->position[axis][i];
+                        : conic_coordinate_of(decoder->header.origin[axis], cloud->position[axis][i]);
   }
   cloud->is_left_out[i] = !conic_filter_passes(choice->filter, values);
 }
