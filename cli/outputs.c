@@ -111,9 +111,10 @@ int cli_check_inputs_stay(const cli_session *session, const char *const *inputs,
 }
 
 int cli_check_ending(const char *path, const char *ending) {
-  static const char *const known[] = {"ply", "obj",  "las", "laz",  "xyz", "pts",  "cot", "lpc", "chy", "stl",
-                                      "off", "gltf", "glb", "3mf",  "dae", "fbx",  "3ds", "x3d", "dxf", "amf",
-                                      "exr", "png",  "jpg", "jpeg", "tif", "tiff", "pfm", "hdr", "json"};
+  static const char *const known[] = {
+      "ply", "obj", "las", "laz", "xyz", "pts", "cot",   "lpc", "chy",  "stl", "off",  "gltf", "glb", "3mf",  "dae",
+      "fbx", "3ds", "x3d", "dxf", "amf", "exr", "png",   "jpg", "jpeg", "tif", "tiff", "pfm",  "hdr", "json", "csv",
+      "txt", "pcd", "e57", "ptx", "spz", "sog", "splat", "npy", "npz",  "gif", "mp4",  "webm", "pdf", "svg"};
   const char *own = path ? conic_file_ending(path) : "";
   if (!*own || strcasecmp(own, ending) == 0)
     return CLI_DONE;

@@ -16,8 +16,10 @@ enum { AT_RETURN = 14, AT_COLOR = 30, POINT_BYTES = 30, COLOR_BYTES = 6 };
 /* A value of the first batch, and where it goes. */
 typedef struct las_column {
   char name[CONIC_LAS_NAME_ROOM];
+  const char *prefix; /* of the name in the file */
   conic_las_field field;
   const double *values; /* in the current batch; null: it lacks them */
+  int is_whole;         /* what the field cannot hold is an error */
 } las_column;
 
 struct conic_las_writer {
@@ -134,36 +136,85 @@ conic_status conic_las_writer_open(conic_context *context, const char *path, con
 
 /* --- the header --- */
 
-/* The format's own field of a name; null: it has none. */
+/* The format's own field of a name, or of one that means the same, such as Intensity; null: it has none. */
 static const conic_las_field *find_own_field(const conic_las_fields *fields, const char *name) {
   for (size_t i = 0; i < fields->n; i++)
     if (strcmp(fields->list[i].name, name) == 0)
       return &fields->list[i];
+  for (size_t i = 0; i < fields->n; i++)
+    if (conic_field_is(fields->list[i].name, name))
+      return &fields->list[i];
   return NULL;
+}
+
+/* The most that a field of whole numbers holds; 0: its numbers are others. */
+static double most_of_whole(const conic_las_field *field) {
+  if (field->mask)
+    return (double)field->mask;
+  if (field->scale != 1.0 || (field->type != CONIC_PLY_UINT8 && field->type != CONIC_PLY_UINT16))
+    return 0.0;
+  return field->type == CONIC_PLY_UINT8 ? 255.0 : 65535.0;
+}
+
+static int is_whole_number(double value, double most) {
+  return !(value - value == 0.0) || (value >= 0.0 && value <= most && value == floor(value));
+}
+
+static void add_extra_column(conic_las_writer *w, const char *prefix, const char *name, const char *type) {
+  las_column *column = &w->columns[w->n_columns++];
+  *column = (las_column){.prefix = prefix, .field = {.type = conic_ply_type_of(type), .scale = 1.0}};
+  snprintf(column->name, sizeof column->name, "%s", name);
+  column->field.at = w->point_bytes;
+  w->point_bytes += conic_ply_type_bytes(column->field.type);
+  w->n_extra++;
+}
+
+/* Numbers of other files that a field of whole numbers would spoil are also kept as they are. The field has them
+ * rounded, or, where they lie between 0 and 1, of 65,535. */
+static void choose_own_column(conic_las_writer *w, const conic_las_field *own, const conic_point_values *values,
+                              size_t k) {
+  las_column *column = &w->columns[w->n_columns++];
+  const double most = w->has_source ? 0.0 : most_of_whole(own);
+  double greatest = 0.0, least = 0.0;
+  int is_whole = 1;
+  for (size_t i = 0; i < values->count && most > 0.0; i++) {
+    const double value = values->value[k][i];
+    is_whole &= is_whole_number(value, most);
+    greatest = value > greatest ? value : greatest;
+    least = value < least ? value : least;
+  }
+  *column = (las_column){.prefix = "", .field = *own, .is_whole = most > 0.0 && is_whole};
+  snprintf(column->name, sizeof column->name, "%s", values->field[k].name);
+  w->has_returns |= strcmp(own->name, "return_number") == 0;
+  if (is_whole)
+    return;
+  if (greatest <= 1.0 && least >= 0.0)
+    column->field.scale = 1.0 / most;
+  if (w->n_columns < CONIC_MOST_POINT_VALUES)
+    add_extra_column(w, "exact_", values->field[k].name, "double");
+}
+
+/* Whether another value has the field: of its very name, or one before that means the same. */
+static int is_taken(const conic_las_field *own, const conic_point_values *values, size_t k) {
+  for (size_t i = 0; i < values->n; i++)
+    if (i != k &&
+        (strcmp(values->field[i].name, own->name) == 0 || (i < k && conic_field_is(values->field[i].name, own->name))))
+      return strcmp(values->field[k].name, own->name) != 0;
+  return 0;
 }
 
 static void choose_las_columns(conic_las_writer *w, const conic_point_values *values) {
   conic_las_fields fields;
   conic_las_fields_of_format(w->has_colors ? 7 : 6, &fields);
-  for (size_t k = 0; values && k < values->n; k++) {
+  for (size_t k = 0; values && k < values->n && w->n_columns < CONIC_MOST_POINT_VALUES; k++) {
     const char *name = values->field[k].name, *type = values->field[k].type;
     const conic_las_field *own = find_own_field(&fields, name);
-    las_column *column = &w->columns[w->n_columns];
     if (conic_field_is_of_splats(name))
       continue;
-    memset(column, 0, sizeof *column);
-    snprintf(column->name, sizeof column->name, "%s", name);
-    w->has_returns |= strcmp(name, "return_number") == 0;
-    w->n_columns++;
-    if (own) {
-      column->field = *own;
-      continue;
-    }
-    column->field.type = conic_ply_type_of(type ? type : "double");
-    column->field.scale = 1.0;
-    column->field.at = w->point_bytes;
-    w->point_bytes += conic_ply_type_bytes(column->field.type);
-    w->n_extra++;
+    if (own && !is_taken(own, values, k))
+      choose_own_column(w, own, values, k);
+    else
+      add_extra_column(w, "", name, type ? type : "double");
   }
 }
 
@@ -183,8 +234,10 @@ static void put_extra_record(conic_las_writer *w) {
       continue;
     memset(extra, 0, sizeof extra);
     extra[2] = numbers[column->field.type];
-    for (size_t i = 0; i < 32 && column->name[i]; i++)
-      extra[4 + i] = (unsigned char)column->name[i];
+    char name[CONIC_LAS_NAME_ROOM + 8];
+    snprintf(name, sizeof name, "%s%s", column->prefix, column->name);
+    for (size_t i = 0; i < 32 && name[i]; i++)
+      extra[4 + i] = (unsigned char)name[i];
     fwrite(extra, 1, sizeof extra, w->file);
   }
 }
@@ -288,9 +341,16 @@ static conic_status put_las_point(conic_las_writer *w, const conic_splats *batch
   conic_status status = put_place(w, batch, i, point, &is_there);
   if (status != CONIC_OK || !is_there)
     return status;
-  for (size_t k = 0; k < w->n_columns; k++)
-    if (w->columns[k].values)
-      put_las_value(&w->columns[k].field, w->columns[k].values[i], point);
+  for (size_t k = 0; k < w->n_columns; k++) {
+    const las_column *column = &w->columns[k];
+    if (!column->values)
+      continue;
+    if (column->is_whole && !is_whole_number(column->values[i], most_of_whole(&column->field)))
+      return conic_fail(w->context, CONIC_ERROR_UNSUPPORTED,
+                        "%s: cannot write: %s is %.9g, and has no fractions in LAS", w->path, column->name,
+                        column->values[i]);
+    put_las_value(&column->field, column->values[i], point);
+  }
   if (!w->has_returns)
     point[AT_RETURN] = 1 | 1 << 4; /* the only one */
   if (w->has_colors && batch->color[0])

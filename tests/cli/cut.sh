@@ -45,6 +45,27 @@ run 0 cut kept.las --where 'class = 2' -o again.ply
 same "a class in a LAS" "$(points_in again.ply)" "$wanted"
 run 0 cut kept.las -o twice.las
 cmp -s kept.las twice.las || fail "a LAS that is cut as a whole is another"
+
+# Numbers are compared as the file has them, not as floats beside an origin hold them.
+awk 'BEGIN { print "x,y,z,Intensity,scalar_reflect"; for (i = 0; i < 500; i++) printf "%.3f,%.3f,%.3f,%d,0.%03d\n", 5000 + i % 100 / 10, 3000 + i / 100, 120 + i / 1000, 40000 + i, i }' > tenths.csv
+for condition in 'x = 5003.7|$1 == "5003.700"' 'z > 120.1|$3 > "120.100"' 'z = 120.3|$3 == "120.300"' 'x <= 5000.2|$1 <= "5000.200"'; do
+  run 0 cut tenths.csv --where "${condition%|*}" -o some.ply
+  same "$condition" "$(points_in some.ply)" "$(awk -F, "NR > 1 && ${condition#*|}" tenths.csv | wc -l)"
+done
+run 0 cut tenths.csv --box 5000,3000,120,5009.9,3004.99,120.499 -o some.ply
+same "a box to the points at its sides" "$(points_in some.ply)" 500
+
+# Values whose names mean a field of LAS are put there; what that would spoil is also kept as it is.
+run 0 cut tenths.csv --keep all -o tenths.las
+run 0 cut tenths.las --where 'intensity = 40123' -o some.ply
+same "an intensity by another name" "$(points_in some.ply)" 1
+sed 's/,Intensity,scalar_reflect/,whole,intensity/' tenths.csv > floats.csv
+run 0 cut floats.csv --keep all -o floats.las
+run 0 cut floats.las --where 'exact_intensity = 0.123' -o some.ply
+same "an intensity of fractions" "$(points_in some.ply)" 1
+run 0 cut floats.las --where 'intensity = 8061' -o some.ply # 0.123 * 65535
+same "an intensity of fractions, of 65,535" "$(points_in some.ply)" 1
+
 run 3 cut sheet.csv --keep klass -o never.ply
 run 4 cut far.xyz -o never.las
 
