@@ -68,6 +68,9 @@ static void print_intermediates(const intermediates_job *job) {
            first->row, first->column);
     if (first->gaussian != CONIC_NO_ID)
       printf(" of Gaussian %u", first->gaussian);
+    if (strncmp(first->name, "render_", 7) == 0)
+      printf(" at pixel %zu,%zu", first->row % (size_t)job->scene.shot.camera.width,
+             first->row / (size_t)job->scene.shot.camera.width);
     printf(" is %.9g", first->found);
     if (first->what)
       printf(": %s", first->what);

@@ -354,8 +354,22 @@ static conic_status judge_rows(intermediates_judging *j) {
 
 /* --- the picture --- */
 
+/* Where the few worst pixels are wrong in alpha alone, or in colours alone, the other has its first wrong one. */
+static void take_first_fault(const uint32_t *faults, const float *rgba, unsigned channels, conic_judged_array *to) {
+  size_t pixel = 0;
+  int channel = 0;
+  while (!(faults[pixel] & channels << CONIC_MAX_PLANES))
+    pixel++;
+  while (!(faults[pixel] & (channels & 1u << channel) << CONIC_MAX_PLANES) && channel < 3)
+    channel++;
+  to->row = pixel;
+  to->column = channel == 3 ? 0 : channel;
+  to->found = to->value = to->low = to->high = (double)rgba[4 * pixel + (size_t)channel];
+  to->what = "it is out of its range";
+}
+
 static void take_faults(intermediates_judging *j, const uint32_t *faults, const conic_gaussian_verdict *v,
-                        int has_alpha) {
+                        const float *rgba, int has_alpha) {
   const size_t width = (size_t)j->e.bounding.width;
   for (int name = GIVEN_RENDER_COLORS; name <= (has_alpha ? GIVEN_RENDER_ALPHAS : GIVEN_RENDER_COLORS); name++) {
     const int is_alpha = name == GIVEN_RENDER_ALPHAS;
@@ -363,16 +377,20 @@ static void take_faults(intermediates_judging *j, const uint32_t *faults, const 
     *to = (conic_judged_array){.judged = v->judged_pixels, .gaussian = CONIC_NO_ID};
     for (size_t i = 0; i < v->judged_pixels; i++)
       to->wrong += (faults[i] & (is_alpha ? 8u : 7u) << CONIC_MAX_PLANES) != 0;
+    int is_listed = 0;
     for (int k = v->n_worst - 1; k >= 0; k--) {
       const conic_oracle_fault *f = &v->worst[k];
       if ((f->channel == 3) != is_alpha)
         continue;
+      is_listed = 1;
       to->row = (size_t)f->y * width + (size_t)f->x;
       to->column = is_alpha ? 0 : f->channel;
       to->found = f->found;
       to->low = f->low;
       to->high = f->high;
     }
+    if (to->wrong > 0 && !is_listed)
+      take_first_fault(faults, rgba, is_alpha ? 8u : 7u, to);
   }
 }
 
@@ -396,7 +414,7 @@ static conic_status judge_picture(intermediates_judging *j, const conic_gaussian
     status =
         conic_gaussian_judge(j->context, gaussians, camera, &j->e.options, &judging, &picture.image, NULL, &verdict);
   if (status == CONIC_OK)
-    take_faults(j, judging.faults, &verdict, !picture.image.lacks_alpha);
+    take_faults(j, judging.faults, &verdict, picture.image.planes[CONIC_PLANE_RGBA], !picture.image.lacks_alpha);
   conic_picture_release(j->context, &picture);
   conic_memory_release(j->context, judging.faults);
   return status;

@@ -105,6 +105,12 @@ class Judge(unittest.TestCase):
             said = caught.exception.verdict
             first = [array["name"] for array in said["arrays"] if array["wrong"]][0]
             self.assertEqual((said["stage"], first), (stage, name), said)
+        alphas = alphas + 2  # so that all of the worst pixels are of alpha
+        with self.assertRaises(PictureMismatch) as caught:
+            judged()
+        worst = next(a for a in caught.exception.verdict["arrays"] if a["name"] == "render_colors")["worst"]
+        self.assertAlmostEqual(worst["found"], float(colors.reshape(-1, 3)[worst["row"], worst["column"]]), 6)
+        self.assertGreater(worst["found"], 0)
         with self.assertRaisesRegex(conic.InputError, "one camera at a time"):
             judged(means2d=numpy.zeros((2, 120, 2)))
 
