@@ -198,6 +198,11 @@ static int convert_scene(void *cookie) {
 
 static void tell_losses(const void *cookie) {
   const convert_job *job = cookie;
+  if (!job->frame && memcmp(job->frame_in, job->scene.frame, 3) != 0)
+    cli_note(
+        job->base.session,
+        "%s: its axes are %s, as its kind has them, and were %s: cameras of %s do not fit; --frame keep turns nothing",
+        job->base.output, job->scene.frame, job->frame_in, job->base.input);
   if (job->is_checked && !job->is_lossless)
     cli_note(job->base.session, "%s: not all of it is as it was: %s", job->base.output, job->losses);
   const char *sides = job->n_views == 1 ? "side" : "sides";
