@@ -33,7 +33,7 @@ else()
   set(LIBDEFLATE_FOUND FALSE)
 endif()
 
-if(CONIC_WITH_OPENIMAGEIO AND NOT WIN32) # where no module is loaded, as in core/base/module_windows.c
+if(CONIC_WITH_OPENIMAGEIO AND NOT WIN32) # where no module is loaded, as in core/base/module_absent.c
   if(NOT CMAKE_CXX_COMPILER)
     unset(CMAKE_CXX_COMPILER CACHE) # one may have been installed since the last look
   endif()

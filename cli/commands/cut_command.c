@@ -235,8 +235,8 @@ static int run_cut(cli_session *session, int argc, char **argv) {
   conic_layers_options_init(&job.building);
   const cli_option options[] = {
       {"o", CLI_TEXT, &job.base.output, "OUT", "the file to write: .ply, .lpc or .las"},
-      {"box", CLI_PARSED, &job.region, "X0,Y0,Z0,X1,Y1,Z1", "what lies in a box; X0,Y0,X1,Y1 for all heights",
-       .parse = cli_cut_parse_box},
+      {"box", CLI_PARSED, &job.region, "X0,Y0,Z0,X1,Y1,Z1",
+       "what lies in a box, or on its sides; X0,Y0,X1,Y1 for all heights", .parse = cli_cut_parse_box},
       {"polygon", CLI_TEXT, &job.polygons, "FILE",
        "what lies in polygons, seen from above: lines of x and y, an empty line between two polygons"},
       CLI_WHERE(&job.base.where),

@@ -38,11 +38,9 @@ static conic_status project_scene(cli_session *session, project_job *job) {
   conic_float_model model;
   conic_status status = cli_gaussians_begin(session, &job->scene, job->floats, &options, &model);
   const double start = cli_seconds();
-  const conic_profile_row *row = conic_profile_row_of(options.profile);
   if (status == CONIC_OK)
-    status = row->shape == CONIC_SHAPE_SOLID
-                 ? conic_view_profile_check(session->context, "project", row, &job->scene.shot.camera)
-                 : conic_view_pinhole_check(session->context, "project", &job->scene.shot.camera);
+    status = conic_view_bounded_check(session->context, "project", conic_profile_row_of(options.profile),
+                                      &job->scene.shot.camera);
   if (status == CONIC_OK)
     status = conic_gaussian_intermediates_find(session->context, conic_source_gaussians(job->scene.source),
                                                &job->scene.shot.camera, &options, &model, &job->found);

@@ -37,46 +37,17 @@ static inline int pthread_join(pthread_t thread, void **result) {
   return EINVAL;
 }
 
-static inline int pthread_mutex_init(pthread_mutex_t *mutex, const void *attributes) {
-  (void)mutex, (void)attributes;
-  return 0;
-}
-
-static inline int pthread_mutex_lock(pthread_mutex_t *mutex) {
-  (void)mutex;
-  return 0;
-}
-
-static inline int pthread_mutex_unlock(pthread_mutex_t *mutex) {
-  (void)mutex;
-  return 0;
-}
-
-static inline int pthread_mutex_destroy(pthread_mutex_t *mutex) {
-  (void)mutex;
-  return 0;
-}
-
-static inline int pthread_cond_init(pthread_cond_t *condition, const void *attributes) {
-  (void)condition, (void)attributes;
-  return 0;
-}
-
-static inline int pthread_cond_wait(pthread_cond_t *condition, pthread_mutex_t *mutex) {
-  (void)condition, (void)mutex;
-  return 0;
-}
-
-static inline int pthread_cond_signal(pthread_cond_t *condition) {
-  (void)condition;
-  return 0;
-}
-
-static inline int pthread_cond_destroy(pthread_cond_t *condition) {
-  (void)condition;
-  return 0;
-}
-
-static inline int pthread_cond_broadcast(pthread_cond_t *condition) {
-  return pthread_cond_signal(condition);
-}
+#define CONIC_SUCCEEDS(function, ...)                                                                                  \
+  static inline int function(__VA_ARGS__) {                                                                            \
+    return 0;                                                                                                          \
+  }
+#define CONIC_UNUSED __attribute__((unused))
+CONIC_SUCCEEDS(pthread_mutex_init, CONIC_UNUSED pthread_mutex_t *mutex, CONIC_UNUSED const void *attributes)
+CONIC_SUCCEEDS(pthread_mutex_lock, CONIC_UNUSED pthread_mutex_t *mutex)
+CONIC_SUCCEEDS(pthread_mutex_unlock, CONIC_UNUSED pthread_mutex_t *mutex)
+CONIC_SUCCEEDS(pthread_mutex_destroy, CONIC_UNUSED pthread_mutex_t *mutex)
+CONIC_SUCCEEDS(pthread_cond_init, CONIC_UNUSED pthread_cond_t *condition, CONIC_UNUSED const void *attributes)
+CONIC_SUCCEEDS(pthread_cond_wait, CONIC_UNUSED pthread_cond_t *condition, CONIC_UNUSED pthread_mutex_t *mutex)
+CONIC_SUCCEEDS(pthread_cond_signal, CONIC_UNUSED pthread_cond_t *condition)
+CONIC_SUCCEEDS(pthread_cond_broadcast, CONIC_UNUSED pthread_cond_t *condition)
+CONIC_SUCCEEDS(pthread_cond_destroy, CONIC_UNUSED pthread_cond_t *condition)

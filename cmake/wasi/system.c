@@ -7,8 +7,7 @@
 
 #include "cli/shell.h"
 #include "cli/stopper.h"
-#include "core/assimp/assimp_process.h"
-#include "core/base/machine.h"
+#include "core/base/base.h"
 
 char **cli_shell_begin(int *argc, char **argv) {
   (void)argc;
@@ -78,34 +77,6 @@ void cli_stopper_end(void) {
 
 int cli_stopper_ask(void) {
   return 0;
-}
-
-const void *conic_module_load(const char *name, const char *symbol, char message[CONIC_MODULE_MESSAGE]) {
-  (void)symbol;
-  snprintf(message, CONIC_MODULE_MESSAGE, "%s: WebAssembly loads no libraries", name);
-  return NULL;
-}
-
-int conic_module_is_there(const char *name) {
-  (void)name;
-  return 0;
-}
-
-conic_status conic_assimp_process_start(conic_context *context, const char *name,
-                                        const conic_assimp_bridge_functions *bridge, conic_assimp_request request,
-                                        conic_assimp_process *process) {
-  (void)bridge, (void)request;
-  *process = (conic_assimp_process){.context = context, .name = name, .descriptor = -1};
-  return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: cannot read: Assimp is not used in WebAssembly", name);
-}
-
-conic_status conic_assimp_process_take(conic_assimp_process *process, void *bytes, size_t n_bytes) {
-  (void)bytes, (void)n_bytes;
-  return conic_fail(process->context, CONIC_ERROR_UNSUPPORTED, "%s: cannot read: nothing is at it", process->name);
-}
-
-void conic_assimp_process_end(conic_assimp_process *process) {
-  (void)process;
 }
 
 /* What wasi-libc declares and lacks. */

@@ -112,6 +112,12 @@ conic_status conic_view_profile_check(conic_context *context, const char *who, c
                     conic_lens_name((conic_lens)camera->lens));
 }
 
+conic_status conic_view_bounded_check(conic_context *context, const char *who, const conic_profile_row *rules,
+                                      const conic_camera *camera) {
+  return rules->shape == CONIC_SHAPE_SOLID ? conic_view_profile_check(context, who, rules, camera)
+                                           : conic_view_pinhole_check(context, who, camera);
+}
+
 conic_status conic_view_arguments_take(conic_context *context, const char *who, const conic_camera *camera,
                                        const conic_render_options *options, conic_render_options *own) {
   conic_render_options_init(own);

@@ -25,6 +25,10 @@ conic_status conic_view_ray_check(conic_context *context, const char *who, const
 conic_status conic_view_profile_check(conic_context *context, const char *who, const conic_profile_row *rules,
                                       const conic_camera *camera);
 
+/* The same of what bounds a profile's pictures, which takes fewer cameras: others than 3dgut-2025's are pinholes. */
+conic_status conic_view_bounded_check(conic_context *context, const char *who, const conic_profile_row *rules,
+                                      const conic_camera *camera);
+
 /* Copies the caller's options (conic_options_take) to `own`. Errors: ARGUMENT: one is null, the options were not
  * initialised, or nobody can look through the camera. */
 conic_status conic_view_arguments_take(conic_context *context, const char *who, const conic_camera *camera,

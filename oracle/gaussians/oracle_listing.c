@@ -16,9 +16,7 @@ conic_status conic_oracle_enter(conic_context *context, const conic_gaussians *g
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "judge: no such options, profile, floats or samples");
   if (e->options.prefilter != 0.0)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "judge: a picture under a prefilter is not judged");
-  const conic_profile_row *row = conic_profile_row_of(e->options.profile);
-  if ((row->shape == CONIC_SHAPE_SOLID ? conic_view_profile_check(context, "judge", row, camera)
-                                       : conic_view_pinhole_check(context, "judge", camera)) != CONIC_OK)
+  if (conic_view_bounded_check(context, "judge", conic_profile_row_of(e->options.profile), camera) != CONIC_OK)
     return CONIC_ERROR_ARGUMENT;
   if ((long)camera->width * samples > 65535 || (long)camera->height * samples > 65535)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "judge: so many samples make more than 65535 a side");

@@ -1,4 +1,4 @@
-/* Windows cannot fork a process, so Assimp reads no files here: they might crash it. */
+/* Windows and WebAssembly cannot fork a process, so Assimp reads no files there: they might crash it. */
 #include "core/assimp/assimp_process.h"
 
 #include "core/base/message.h"
@@ -8,7 +8,7 @@ conic_status conic_assimp_process_start(conic_context *context, const char *name
                                         conic_assimp_process *process) {
   (void)bridge, (void)request;
   *process = (conic_assimp_process){.context = context, .name = name, .descriptor = -1};
-  return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: cannot read: Assimp is not used on Windows", name);
+  return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: cannot read: Assimp is not used on this system", name);
 }
 
 conic_status conic_assimp_process_take(conic_assimp_process *process, void *bytes, size_t n_bytes) {
