@@ -51,7 +51,7 @@ for my $folder (@engine, qw(tests examples)) {
     push @{$files{$name}}, $path if $name ne "CMakeLists.txt" && $path !~ m{^bench/\w+/run$};
     $rooms{$room}++ if $folder ne 'tests';
     next if $name !~ /\.(?:c|h|cpp)$/ || $path =~ m{^opencl/c_library/}; # stands for the C library where there is none
-    next if $path =~ /^(.*)_windows\.c$/ && -f "$root/$1_posix.c"; # which it stands for
+    next if $path =~ /^(.*)_(?:windows|absent)\.c$/ && -f "$root/$1_posix.c"; # which it stands for
     my ($code, $guard, @macros) = code_of($path);
     if ($name =~ /\.h$/ && $name !~ /_body\.h$/) {
       my $wanted = 'CONIC_' . uc($name =~ s/\.h$//r) . '_H';
