@@ -1,4 +1,3 @@
-#include "conic/motion.h"
 
 #include "accumulation/motion_file.h"
 #include "conic/accumulate.h"

@@ -1,5 +1,4 @@
 /* Whether a mistake explains all of a picture, and not only the samples by which it was found. */
-#include <math.h>
 
 #include "core/base/base.h"
 #include "judge/diagnosis_samples.h"

@@ -1,7 +1,5 @@
 #include "source/reach.h"
 
-#include <math.h>
-
 #include "core/base/base.h"
 #include "core/splats/splats_gather.h"
 

@@ -6,7 +6,6 @@
 
 #include <openexr.h>
 #include <stdatomic.h>
-#include <stdint.h>
 #include <stdio.h>
 
 #include "conic/image.h"

@@ -1,6 +1,5 @@
 #include "core/pictures/image_exr.h"
 
-#include "core/base/message.h"
 #include "core/pictures/image_exr_bands.h"
 
 #if CONIC_HAVE_OPENEXR

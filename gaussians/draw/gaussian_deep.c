@@ -1,5 +1,4 @@
 /* Deep pictures of Gaussian scenes: a sample for each Gaussian that a pixel is composited of. */
-#include <stdlib.h>
 
 #include "core/base/base.h"
 #include "core/base/radix.h"

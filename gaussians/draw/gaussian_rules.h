@@ -3,7 +3,6 @@
 
 #include "core/splats/gaussian_profile.h"
 #ifdef CONIC_ON_DEVICE
-#include "conic/image.h"
 #endif
 
 typedef struct conic_gaussian_rules {

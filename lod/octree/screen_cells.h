@@ -3,7 +3,6 @@
 #pragma once
 
 #include "conic/render.h"
-#include "conic/splats.h"
 
 typedef struct conic_screen_cells {
   conic_splats splats;

@@ -1,5 +1,4 @@
 
-#include <math.h>
 
 #include "raster/project/clip_disc.h"
 

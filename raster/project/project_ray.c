@@ -1,4 +1,3 @@
-#include <math.h>
 
 #include "core/base/vectors.h"
 #include "raster/project/clip_disc.h"

@@ -1,8 +1,5 @@
 #include "raster/project/projected.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "core/base/vectors.h"
 #include "raster/view/method.h"
 #include "raster/view/slips.h"

@@ -1,4 +1,3 @@
-#include <math.h>
 
 #include "raster/tiles/light_terms.h"
 
