@@ -152,13 +152,6 @@ static int take_unit(uint64_t *unit) {
   return 1;
 }
 
-/* Under the lock; what is sent is small, and somebody waits for it. */
-static void give_units(void) {
-  uint64_t unit;
-  while (work.n_waiting > 0 && take_unit(&unit))
-    MPI_Send(&unit, sizeof unit, MPI_BYTE, work.waiting[--work.n_waiting], TAG_UNIT, service_line);
-}
-
 static void take_hand(int from, uint64_t n_bytes) {
   double start = conic_seconds_now();
   void *bytes = receive_pieces(from, (size_t)n_bytes, TAG_HAND_PIECE, service_line);
@@ -202,7 +195,10 @@ static void *serve(void *unused) {
     int is_found = find_message(&message, &status);
     if (is_found)
       is_going_on = heed(&message, &status);
-    give_units();
+    /* Under the lock; what is sent is small, and somebody waits for it. */
+    uint64_t unit;
+    while (work.n_waiting > 0 && take_unit(&unit))
+      MPI_Send(&unit, sizeof unit, MPI_BYTE, work.waiting[--work.n_waiting], TAG_UNIT, service_line);
     pthread_mutex_unlock(&work.lock);
     while (atomic_load(&work.is_wanted))
       sched_yield();
@@ -361,13 +357,6 @@ static void send_hand(const void *bytes, size_t n_bytes) {
   send_blob(0, bytes, n_bytes, TAG_HAND, TAG_HAND_PIECE, service_line);
 }
 
-/* All that this rank has handed over is rank 0's, or on its way to the one thread that takes it. */
-static void empty_outbox(void) {
-  double start = conic_seconds_now();
-  outbox_wait();
-  count_traffic(0, 0, conic_seconds_now() - start);
-}
-
 static void hand_to_first(void *unused, const void *bytes, size_t n_bytes) {
   (void)unused;
   if (own_index > 0) {
@@ -416,7 +405,10 @@ static int worst_of_ranks(void *unused, int code, char *message, size_t room) {
     return code;
   if (code > 0)
     stop_units();
-  empty_outbox();
+  /* All that this rank has handed over is rank 0's, or on its way to the one thread that takes it. */
+  double start = conic_seconds_now();
+  outbox_wait();
+  count_traffic(0, 0, conic_seconds_now() - start);
   MPI_Request request;
   MPI_Iallreduce(&own, &worst, 1, MPI_2INT, MPI_MAXLOC, main_line, &request);
   wait_for(&request);

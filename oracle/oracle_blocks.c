@@ -136,14 +136,11 @@ static int make_block_room(const oracle_job *j, worker *w, size_t n) {
     return 1;
   release_room(j->context, w);
   w->room = n + n / 2;
-  w->splats = conic_memory_allocate(j->context, w->room, sizeof *w->splats);
-  w->candidates = conic_memory_allocate(j->context, w->room, sizeof *w->candidates);
-  w->exacts = conic_memory_allocate(j->context, n_exact, sizeof *w->exacts);
-  w->peaks = conic_memory_allocate(j->context, n_exact, sizeof *w->peaks);
-  w->fragments = conic_memory_allocate(j->context, w->room + 1, sizeof *w->fragments); /* and a triangle's */
-  w->parts = conic_memory_allocate(j->context, w->room + 1, sizeof *w->parts);
-  w->order = conic_memory_allocate(j->context, w->room + 1, sizeof *w->order);
-  if (w->splats && w->candidates && w->exacts && w->peaks && w->fragments && w->parts && w->order)
+  const size_t n_fragments = w->room + 1; /* one is a triangle's */
+  if (conic_memory_allocate_these(j->context, CONIC_ROOM(w->splats, w->room), CONIC_ROOM(w->candidates, w->room),
+                                  CONIC_ROOM(w->exacts, n_exact), CONIC_ROOM(w->peaks, n_exact),
+                                  CONIC_ROOM(w->fragments, n_fragments), CONIC_ROOM(w->parts, n_fragments),
+                                  CONIC_ROOM(w->order, n_fragments)) == CONIC_OK)
     return 1;
   w->room = 0;
   return 0;

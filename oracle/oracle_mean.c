@@ -20,22 +20,19 @@ static conic_status begin_mean(conic_context *context, const conic_reference *sa
   mean->samples = sample->samples;
   mean->white = sample->white;
   mean->n_pixels = mean->n_alternatives = n;
-  mean->unstable = conic_memory_allocate_zeroed(context, n, 1);
-  mean->alternatives = conic_memory_allocate_zeroed(context, n, sizeof *mean->alternatives);
-  int is_complete = mean->unstable && mean->alternatives;
-  for (int i = 0; i < CONIC_N_DRAWN_PLANES && is_complete; i++) {
+  conic_status status =
+      conic_memory_allocate_these(context, CONIC_ZEROED(mean->unstable, n), CONIC_ZEROED(mean->alternatives, n));
+  for (int i = 0; i < CONIC_N_DRAWN_PLANES && status == CONIC_OK; i++) {
     size_t n_channels = (size_t)conic_plane_describe((conic_plane)i)->n_channels;
-    is_complete = (mean->planes[i] = conic_memory_allocate_zeroed(context, n, n_channels * sizeof(double))) != NULL;
+    status = conic_memory_allocate_these(context, CONIC_ZEROED(mean->planes[i], n_channels * n));
   }
-  if (is_complete && sample->pixels) {
-    mean->pixels = conic_memory_allocate(context, n, sizeof *mean->pixels);
-    is_complete = mean->pixels != NULL;
-    if (is_complete)
-      memcpy(mean->pixels, sample->pixels, n * sizeof *mean->pixels);
-  }
-  for (size_t i = 0; i < n && is_complete; i++)
+  if (status == CONIC_OK && sample->pixels)
+    status = conic_memory_allocate_these(context, CONIC_ROOM(mean->pixels, n));
+  if (mean->pixels)
+    memcpy(mean->pixels, sample->pixels, n * sizeof *mean->pixels);
+  for (size_t i = 0; i < n && status == CONIC_OK; i++)
     mean->alternatives[i].pixel = (uint32_t)i;
-  return is_complete ? CONIC_OK : CONIC_ERROR_MEMORY;
+  return status;
 }
 
 /* What a channel of a pixel may be: all that its alternatives allow, which are from `first` to before `end`. */

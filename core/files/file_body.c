@@ -11,13 +11,6 @@ void conic_file_add_array(conic_file_layout *layout, size_t n_bytes, conic_file_
   layout->n_bytes = (layout->n_bytes + n_bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
 }
 
-/* Finds the arrays in the bytes of a whole file. */
-static void file_list_arrays(const conic_file_layout *layout, const unsigned char *bytes,
-                             const void *arrays[CONIC_FILE_MOST_ARRAYS]) {
-  for (int i = 0; i < layout->n; i++)
-    arrays[i] = bytes + layout->arrays[i].offset;
-}
-
 /* Whole records, between a file's order and the machine's. */
 static void turn_records(conic_file_record record, unsigned char *bytes, size_t n_bytes) {
   if (record[1] == 0) {
@@ -86,7 +79,8 @@ uint64_t conic_file_sum_arrays(conic_context *context, const conic_file_layout *
 uint64_t conic_file_sum_bytes(conic_context *context, const conic_file_layout *layout, const unsigned char *bytes) {
   const void *arrays[CONIC_FILE_MOST_ARRAYS];
   sum_job job = {.layout = layout, .arrays = arrays, .is_file = 1};
-  file_list_arrays(layout, bytes, arrays);
+  for (int i = 0; i < layout->n; i++)
+    arrays[i] = bytes + layout->arrays[i].offset;
   return sum_all(context, &job);
 }
 

@@ -47,12 +47,6 @@ static int divide(natural *number, uint32_t divisor) {
   return rest != 0;
 }
 
-static void shift_left_words(natural *number, int n_words) {
-  memmove(number->words + n_words, number->words, (size_t)number->n * sizeof *number->words);
-  memset(number->words, 0, (size_t)n_words * sizeof *number->words);
-  number->n += n_words;
-}
-
 /* The number's most significant 64 bits, with the highest set; *n_below: how many bits are below them (negative for a
  * number of fewer than 64 bits); *has_rest: one of those is set. */
 static uint64_t leading_bits(const natural *number, int *n_below, int *has_rest) {
@@ -137,7 +131,9 @@ static double convert_exactly(const decimal *source) {
     multiply_add(&number, 10, 0);
   if (exponent10 < 0) { /* 3.33 bits for each power of ten, and 70 to spare for the quotient */
     n_shifted_words = (-exponent10 * 10 / 3 + 70) / 32 + 1;
-    shift_left_words(&number, n_shifted_words);
+    memmove(number.words + n_shifted_words, number.words, (size_t)number.n * sizeof *number.words);
+    memset(number.words, 0, (size_t)n_shifted_words * sizeof *number.words);
+    number.n += n_shifted_words;
   }
   for (; exponent10 <= -9; exponent10 += 9)
     has_rest |= divide(&number, 1000000000u);

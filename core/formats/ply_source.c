@@ -213,11 +213,6 @@ static void convert_floats(const unsigned char *bytes, size_t stride, size_t n, 
     values[i] = (double)conic_float_of_bits(load_32(bytes + i * stride, is_big));
 }
 
-static void convert_doubles(const unsigned char *bytes, size_t stride, size_t n, int is_big, double *values) {
-  for (size_t i = 0; i < n; i++)
-    values[i] = conic_double_of_bits(load_64(bytes + i * stride, is_big));
-}
-
 static void convert_integers(const unsigned char *bytes, size_t stride, size_t n, conic_ply_type type, int is_big,
                              double *values) {
   for (size_t i = 0; i < n; i++, bytes += stride)
@@ -252,9 +247,10 @@ void conic_ply_convert(const unsigned char *bytes, size_t stride, size_t n, coni
     convert_floats(bytes, stride, n, 1, values);
   else if (type == CONIC_PLY_FLOAT)
     convert_floats(bytes, stride, n, 0, values);
-  else if (type == CONIC_PLY_DOUBLE)
-    convert_doubles(bytes, stride, n, is_big, values);
-  else
+  else if (type == CONIC_PLY_DOUBLE) {
+    for (size_t i = 0; i < n; i++)
+      values[i] = conic_double_of_bits(load_64(bytes + i * stride, is_big));
+  } else
     convert_integers(bytes, stride, n, type, is_big, values);
 }
 

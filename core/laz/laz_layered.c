@@ -465,13 +465,6 @@ static void read_extra_layer(conic_laz_layered *l, size_t i_extra, item_turn tur
 
 /* --- all layers of some points --- */
 
-/* Fields without a layer are the first point's. */
-static void fill_from_first(const conic_laz_layered *l, size_t n, unsigned char *records) {
-  size_t point_bytes = l->format->point_bytes;
-  for (size_t i = 0; i < n; i++)
-    memcpy(records + i * point_bytes, l->first, point_bytes);
-}
-
 static void read_extra_layers(conic_laz_layered *l, size_t n, unsigned char *records) {
   const conic_laz_format *format = l->format;
   item_turn before = l->extra_turn;
@@ -500,7 +493,8 @@ static inline void read_layer(conic_laz_layered *l, int layer, layer_reader *rea
 static void read_run(conic_laz_layered *l, size_t n, unsigned char *records) {
   size_t point_bytes = l->format->point_bytes;
   unsigned first_flags = l->is_there[FLAGS] ? 0 : l->first[15] & 0xcfu;
-  fill_from_first(l, n, records);
+  for (size_t i = 0; i < n; i++) /* fields without a layer are the first point's */
+    memcpy(records + i * point_bytes, l->first, point_bytes);
   for (size_t i = 0; i < n; i++) {
     read_xy(l, &l->hints[i], records + i * point_bytes);
     records[i * point_bytes + 15] |= (unsigned char)first_flags;

@@ -340,12 +340,6 @@ static conic_status make_decoders(laz_reading *r) {
   return status;
 }
 
-static void release_reading(laz_reading *r) {
-  for (int i = 0; r->decoders && i < r->n_threads; i++)
-    conic_laz_decoder_destroy(r->decoders[i]);
-  conic_memory_release_these(r->context, r->decoders, r->chunks, r->packed, r->records, r->from.held);
-}
-
 static conic_status read_all_chunks(laz_reading *r) {
   int is_chunked = r->format->compressor != 1;
   conic_status status = is_chunked ? read_table(r) : CONIC_OK;
@@ -392,6 +386,8 @@ conic_status conic_laz_read(conic_input *input, const conic_laz_format *format, 
     conic_log(r.context, CONIC_LOG_WARNING,
               "%s: LAZ: the file ends, or is spoiled, before all of its points: %llu of %llu are left out", input->name,
               (unsigned long long)(n_points - r.n_read), (unsigned long long)n_points);
-  release_reading(&r);
+  for (int i = 0; r.decoders && i < r.n_threads; i++)
+    conic_laz_decoder_destroy(r.decoders[i]);
+  conic_memory_release_these(r.context, r.decoders, r.chunks, r.packed, r.records, r.from.held);
   return status;
 }

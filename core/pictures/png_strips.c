@@ -232,15 +232,6 @@ static conic_status open_strips(conic_context *context, png_strips *s, size_t n)
   return status;
 }
 
-static void close_strips(conic_context *context, png_strips *s, size_t n) {
-  for (size_t i = 0; s->strips && i < n; i++) {
-    png_strip *strip = &s->strips[i];
-    close_strip(strip);
-    conic_memory_release_these(context, strip->rows[0], strip->rows[1], strip->filtered, strip->chunk);
-  }
-  conic_memory_release(context, s->strips);
-}
-
 conic_status conic_png_write_strips(conic_context *context, const conic_image *image, conic_tone tone,
                                     const conic_png_rows *rows, FILE *to) {
   png_strips s = {
@@ -276,7 +267,12 @@ conic_status conic_png_write_strips(conic_context *context, const conic_image *i
     conic_store_big_32(end + CONIC_PNG_DATA, (uint32_t)adler);
     fwrite(end, 1, conic_png_close_chunk(end, "IDAT", 4), to);
   }
-  close_strips(context, &s, n_a_round);
+  for (size_t i = 0; s.strips && i < n_a_round; i++) {
+    png_strip *strip = &s.strips[i];
+    close_strip(strip);
+    conic_memory_release_these(context, strip->rows[0], strip->rows[1], strip->filtered, strip->chunk);
+  }
+  conic_memory_release(context, s.strips);
   conic_memory_release(context, s.codes);
   return status;
 }

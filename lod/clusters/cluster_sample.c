@@ -15,10 +15,10 @@ conic_status conic_sampler_create(conic_context *context, conic_sampler **sample
 void conic_sampler_destroy(conic_sampler *sampler) {
   if (!sampler)
     return;
-  void *const owned[] = {sampler->last.lattices, sampler->last.owner, sampler->last.sites, sampler->now.lattices,
-                         sampler->facing,        sampler->depth,      sampler->places,     sampler->lattice_of,
-                         sampler->now.owner,     sampler->candidates, sampler->seeds,      sampler->now.sites};
-  conic_memory_release_all(sampler->context, owned, sizeof owned / sizeof *owned);
+  conic_memory_release_these(sampler->context, sampler->last.lattices, sampler->last.owner, sampler->last.sites,
+                             sampler->now.lattices, sampler->facing, sampler->depth, sampler->places,
+                             sampler->lattice_of, sampler->now.owner, sampler->candidates, sampler->seeds,
+                             sampler->now.sites);
   conic_place_table_release(sampler->context, &sampler->table);
   conic_memory_release_these(sampler->context, sampler->supports, sampler->of_sites);
   for (int i = 0; i < 2; i++)

@@ -98,7 +98,6 @@ struct conic_simplifier {
   double most_error;              /* of what is one; 0: any */
   conic_cluster_levels *levels;   /* of the region's clusters */
   conic_simplifier_spoke *spokes; /* room for those of any vertex */
-  void *memory[18];               /* all of these, but for the borders */
   conic_heap queue;
 };
 
@@ -139,6 +138,7 @@ static inline uint32_t conic_simplifier_material(const conic_simplifier *s, cons
 /* Fills in vertices, triangles and points of the region [begin, end), with room for what is done with them. Errors:
  * MEMORY. */
 conic_status conic_simplifier_load(conic_simplifier *s);
+void conic_simplifier_release_region(conic_simplifier *s);
 
 /* What a corner of u becomes when u is drawn onto v. It is the mesh's vertex at v of a triangle beside their edge that
  * has the same corner at u, and the same cluster and material. NONE where there is no such triangle, or they differ. */

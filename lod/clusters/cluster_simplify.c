@@ -24,9 +24,8 @@ conic_status conic_simplifier_create(conic_context *context, const conic_cluster
 void conic_simplifier_destroy(conic_simplifier *s) {
   if (!s)
     return;
-  for (size_t i = 0; i < sizeof s->memory / sizeof *s->memory; i++)
-    conic_memory_release(s->context, s->memory[i]);
-  conic_memory_release_these(s->context, s->borders, s->number, s);
+  conic_simplifier_release_region(s);
+  conic_memory_release_these(s->context, s->number, s);
 }
 
 /* --- drawing together --- */
@@ -47,13 +46,6 @@ static void trim_ring(conic_simplifier *s, uint32_t v) {
   s->vertices[v].ring = first;
   if (first != CONIC_NONE)
     s->triangles[first / 3].next[first % 3] = conic_simplifier_after(s, first);
-}
-
-/* Notes of a vertex between two clusters that it is there up to the last stage that was taken. */
-static void leave_slot(conic_simplifier *s, uint32_t u) {
-  uint32_t slot = s->chains->of_vertex[s->mesh->adjacency->place[s->vertices[u].original]];
-  if (slot != CONIC_NO_SLOT)
-    s->chains->slots[slot].stage = s->stage;
 }
 
 /* While the triangles beside the edge are still there. */
@@ -86,7 +78,10 @@ static void draw_together(conic_simplifier *s, uint32_t u, uint32_t v) {
     slot = following;
   }
   prune_ring(s, v);
-  leave_slot(s, u);
+  /* Notes of a vertex between two clusters that it is there up to the last stage that was taken. */
+  uint32_t slot = s->chains->of_vertex[s->mesh->adjacency->place[s->vertices[u].original]];
+  if (slot != CONIC_NO_SLOT)
+    s->chains->slots[slot].stage = s->stage;
   memcpy(s->vertices[v].at, s->vertices[u].to, sizeof s->vertices[v].at);
   s->vertices[u].is_gone = 1;
   conic_quadric_add(&s->vertices[v].quadric, &s->vertices[u].quadric);

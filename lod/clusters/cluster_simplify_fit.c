@@ -25,16 +25,13 @@ typedef struct corner_fit {
 static conic_status corner_fit_init(conic_context *context, size_t n_triangles, size_t n_unknowns, int n_values,
                                     corner_fit *fit) {
   *fit = (corner_fit){.context = context, .n_triangles = n_triangles, .n_unknowns = n_unknowns, .n_values = n_values};
-  fit->unknowns = conic_memory_allocate(context, n_triangles, sizeof *fit->unknowns);
-  fit->squares = conic_memory_allocate_zeroed(context, n_triangles, sizeof *fit->squares);
-  fit->right[0] = conic_memory_allocate_zeroed(context, n_unknowns, (size_t)n_values * sizeof **fit->right);
-  fit->solution = conic_memory_allocate(context, n_unknowns, sizeof *fit->solution);
-  fit->work = conic_memory_allocate(context, n_unknowns, 4 * sizeof *fit->work);
-  if (!fit->unknowns || !fit->squares || !fit->right[0] || !fit->solution || !fit->work)
-    return CONIC_ERROR_MEMORY;
-  for (int i = 1; i < n_values; i++)
+  conic_status status = conic_memory_allocate_these(
+      context, CONIC_ROOM(fit->unknowns, n_triangles), CONIC_ZEROED(fit->squares, n_triangles),
+      CONIC_ZEROED(fit->right[0], n_unknowns * (size_t)n_values), CONIC_ROOM(fit->solution, n_unknowns),
+      CONIC_ROOM(fit->work, 4 * n_unknowns));
+  for (int i = 1; i < n_values && status == CONIC_OK; i++)
     fit->right[i] = fit->right[i - 1] + n_unknowns;
-  return CONIC_OK;
+  return status;
 }
 
 static void corner_fit_release(corner_fit *fit) {

@@ -5,47 +5,32 @@
 /* How much more a border's planes weigh than the faces' (HQP §3.2.4). */
 static const double border_weight = 10.0;
 
-static void release_region(conic_simplifier *s) {
-  for (size_t i = 0; i < sizeof s->memory / sizeof *s->memory; i++) {
-    conic_memory_release(s->context, s->memory[i]);
-    s->memory[i] = NULL;
-  }
-  conic_memory_release(s->context, s->borders);
-  s->borders = NULL;
+void conic_simplifier_release_region(conic_simplifier *s) {
+  conic_memory_release_these(s->context, s->vertices, s->triangles, s->points, s->alive, s->taken, s->errors2,
+                             s->queue.keys, s->queue.slots, s->point_starts[0], s->point_starts[1], s->border_starts,
+                             s->spokes, s->originals, s->near, s->wedges, s->changes, s->hits, s->contrasts,
+                             s->borders);
 }
 
 /* Edges have a point each, and at most two on a border; they are at most three a face. */
 static conic_status make_room_for_region(conic_simplifier *s, size_t n_vertices, size_t n_faces) {
-  size_t n_clusters = s->end - s->begin;
-  release_region(s);
-  s->memory[0] = s->vertices = conic_memory_allocate(s->context, n_vertices, sizeof *s->vertices);
-  s->memory[1] = s->triangles = conic_memory_allocate(s->context, n_faces, sizeof *s->triangles);
-  s->memory[2] = s->points = conic_memory_allocate(s->context, n_vertices + 7 * n_faces, sizeof *s->points);
-  s->memory[3] = s->alive = conic_memory_allocate_zeroed(s->context, n_clusters, sizeof *s->alive);
-  s->memory[4] = s->taken = conic_memory_allocate_zeroed(s->context, n_clusters, sizeof *s->taken);
-  s->memory[5] = s->errors2 = conic_memory_allocate_zeroed(s->context, n_clusters, sizeof *s->errors2);
-  s->memory[6] = s->queue.keys = conic_memory_allocate(s->context, n_vertices, sizeof *s->queue.keys);
-  s->memory[7] = s->queue.slots = conic_memory_allocate(s->context, n_vertices, sizeof *s->queue.slots);
-  for (int i = 0; i < 2; i++)
-    s->memory[8 + i] = s->point_starts[i] =
-        conic_memory_allocate(s->context, n_clusters + 1, sizeof *s->point_starts[i]);
-  s->memory[10] = s->border_starts = conic_memory_allocate(s->context, n_clusters + 1, sizeof *s->border_starts);
-  s->memory[11] = s->spokes = conic_memory_allocate(s->context, 2 * n_faces, sizeof *s->spokes);
-  s->memory[12] = s->originals = conic_memory_allocate(s->context, n_faces, sizeof *s->originals);
-  s->memory[13] = s->near = conic_memory_allocate(s->context, n_faces, sizeof *s->near);
-  s->memory[15] = s->wedges = conic_memory_allocate(s->context, n_faces, sizeof *s->wedges);
-  s->memory[14] = s->changes = conic_memory_allocate_zeroed(s->context, n_clusters, sizeof *s->changes);
-  for (size_t i = 0; i < sizeof s->memory / sizeof *s->memory - 2; i++)
-    if (!s->memory[i])
-      return CONIC_ERROR_MEMORY;
-  s->memory[17] = s->hits = s->is_one ? conic_memory_allocate(s->context, n_faces, sizeof *s->hits) : NULL;
-  if (s->is_one && !s->hits)
-    return CONIC_ERROR_MEMORY;
+  size_t n = s->end - s->begin;
+  conic_simplifier_release_region(s);
+  s->hits = NULL;
   s->contrasts = NULL;
-  if (!conic_has_seen_colors(s->mesh->triangles))
-    return CONIC_OK;
-  s->memory[16] = s->contrasts = conic_memory_allocate(s->context, n_faces, sizeof *s->contrasts);
-  return s->contrasts ? CONIC_OK : CONIC_ERROR_MEMORY;
+  s->borders = NULL;
+  conic_status status = conic_memory_allocate_these(
+      s->context, CONIC_ROOM(s->vertices, n_vertices), CONIC_ROOM(s->triangles, n_faces),
+      CONIC_ROOM(s->points, n_vertices + 7 * n_faces), CONIC_ZEROED(s->alive, n), CONIC_ZEROED(s->taken, n),
+      CONIC_ZEROED(s->errors2, n), CONIC_ROOM(s->queue.keys, n_vertices), CONIC_ROOM(s->queue.slots, n_vertices),
+      CONIC_ROOM(s->point_starts[0], n + 1), CONIC_ROOM(s->point_starts[1], n + 1), CONIC_ROOM(s->border_starts, n + 1),
+      CONIC_ROOM(s->spokes, 2 * n_faces), CONIC_ROOM(s->originals, n_faces), CONIC_ROOM(s->near, n_faces),
+      CONIC_ROOM(s->wedges, n_faces), CONIC_ZEROED(s->changes, n));
+  if (status == CONIC_OK && s->is_one)
+    status = conic_memory_allocate_these(s->context, CONIC_ROOM(s->hits, n_faces));
+  if (status == CONIC_OK && conic_has_seen_colors(s->mesh->triangles))
+    status = conic_memory_allocate_these(s->context, CONIC_ROOM(s->contrasts, n_faces));
+  return status;
 }
 
 /* Numbers the region's places. */
@@ -193,12 +178,6 @@ static void add_planes(conic_simplifier *s, const conic_simplifier_triangle *t) 
     conic_quadric_add_plane(&s->vertices[t->corners[corner]].quadric, t->normal, d, area2);
 }
 
-static void treat_triangle(conic_simplifier *s, const conic_simplifier_triangle *t) {
-  for (int corner = 0; corner < 3; corner++)
-    treat_border(s, t, corner);
-  add_planes(s, t);
-}
-
 conic_status conic_simplifier_load(conic_simplifier *s) {
   const conic_clustered_mesh *mesh = s->mesh;
   const size_t *starts = mesh->starts + s->begin;
@@ -222,8 +201,11 @@ conic_status conic_simplifier_load(conic_simplifier *s) {
   s->n_alive = s->n_triangles;
   for (uint32_t cluster = 0; cluster < n_clusters; cluster++) {
     s->point_starts[1][cluster] = s->n_points;
-    for (size_t i = starts[cluster] - starts[0]; i < starts[cluster + 1] - starts[0]; i++)
-      treat_triangle(s, &s->triangles[i]);
+    for (size_t i = starts[cluster] - starts[0]; i < starts[cluster + 1] - starts[0]; i++) {
+      for (int corner = 0; corner < 3; corner++)
+        treat_border(s, &s->triangles[i], corner);
+      add_planes(s, &s->triangles[i]);
+    }
   }
   s->point_starts[1][n_clusters] = s->n_points;
   return CONIC_OK;

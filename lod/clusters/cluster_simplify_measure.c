@@ -136,12 +136,6 @@ static void find_hit(conic_simplifier *s, const conic_simplifier_point *point) {
     hit->triangle = CONIC_NONE;
 }
 
-static void find_hits(conic_simplifier *s, uint32_t cluster) {
-  for (size_t i = s->point_starts[0][cluster]; i < s->point_starts[0][cluster + 1]; i++)
-    if (s->points[i].corners == 7)
-      find_hit(s, &s->points[i]);
-}
-
 /* --- fans --- */
 
 static const double *slot_at(const conic_simplifier *s, uint32_t slot) {
@@ -337,7 +331,9 @@ static double measure_fans(const conic_simplifier *s, uint32_t cluster, double m
 
 void conic_region_measure(conic_simplifier *s, uint32_t cluster) {
   if (s->is_to_fit) {
-    find_hits(s, cluster);
+    for (size_t i = s->point_starts[0][cluster]; i < s->point_starts[0][cluster + 1]; i++)
+      if (s->points[i].corners == 7)
+        find_hit(s, &s->points[i]);
     return;
   }
   s->changes[cluster] = (conic_seen_sums){0.0, 0.0, 0.0};

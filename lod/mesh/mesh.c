@@ -168,12 +168,11 @@ conic_status conic_adjacency_find(conic_context *context, const conic_mesh *mesh
   memset(adjacency, 0, sizeof *adjacency);
   if (mesh->n_faces > UINT32_MAX / 3 || mesh->n_vertices > UINT32_MAX / 2)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%zu triangles are too many", mesh->n_faces);
-  adjacency->place = conic_memory_allocate(context, mesh->n_vertices, sizeof *adjacency->place);
-  adjacency->side = conic_memory_allocate(context, mesh->n_faces, sizeof *adjacency->side);
-  adjacency->across = conic_memory_allocate(context, mesh->n_faces, 3 * sizeof *adjacency->across);
-  adjacency->joints = conic_memory_allocate(context, mesh->n_faces, 3 * sizeof *adjacency->joints);
-  int has_room = adjacency->place && adjacency->side && adjacency->across && adjacency->joints;
-  conic_status status = has_room ? weld(context, mesh, adjacency) : CONIC_ERROR_MEMORY;
+  conic_status status = conic_memory_allocate_these(
+      context, CONIC_ROOM(adjacency->place, mesh->n_vertices), CONIC_ROOM(adjacency->side, mesh->n_faces),
+      CONIC_ROOM(adjacency->across, 3 * mesh->n_faces), CONIC_ROOM(adjacency->joints, 3 * mesh->n_faces));
+  if (status == CONIC_OK)
+    status = weld(context, mesh, adjacency);
   if (status == CONIC_OK) {
     look_at_faces(mesh, adjacency);
     status = list_edges(context, mesh, adjacency, &edges);

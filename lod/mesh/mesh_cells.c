@@ -52,8 +52,7 @@ void conic_mesh_cells_release(conic_mesh_cells *c) {
   conic_scratch_close(&c->vertices);
   conic_scratch_close(&c->faces);
   conic_pile_end(&c->buckets_file);
-  void *const owned[] = {c->buckets, c->filter, c->shared, c->nodes};
-  conic_memory_release_all(c->context, owned, sizeof owned / sizeof *owned);
+  conic_memory_release_these(c->context, c->buckets, c->filter, c->shared, c->nodes);
   conic_memory_release(c->context, c);
 }
 

@@ -104,12 +104,6 @@ static uint32_t stamp_of(const joining *j, uint32_t i) {
   return j->grown[j->joints[i].ends[0]] + j->grown[j->joints[i].ends[1]];
 }
 
-static void evaluate_joint(joining *j, uint32_t i) {
-  j->keys[i] = cost_of(j, i);
-  j->joints[i].stamp = stamp_of(j, i);
-  j->n_evaluations++;
-}
-
 enum { CHUNK = 4096 };
 
 static void evaluate_task(void *data, size_t i_chunk) {
@@ -173,7 +167,9 @@ static conic_status run_phase(joining *j, int phase, double limit) {
       if (j->joints[i].stamp == stamp_of(j, i)) {
         join_clusters(j, i);
       } else {
-        evaluate_joint(j, i);
+        j->keys[i] = cost_of(j, i);
+        j->joints[i].stamp = stamp_of(j, i);
+        j->n_evaluations++;
         if (j->keys[i] <= j->limit)
           conic_heap_push(&j->queue, i);
       }
@@ -223,12 +219,6 @@ static conic_status begin_joining(joining *j, const conic_mesh *mesh, const coni
     link_slot(j, (uint32_t)(2 * i + 1), from->faces[1]);
   }
   return CONIC_OK;
-}
-
-static void end_joining(joining *j) {
-  void *const owned[] = {j->joints, j->keys,   j->queue.slots, j->sums,  j->ring,
-                         j->parent, j->degree, j->grown,       j->is_new};
-  conic_memory_release_all(j->context, owned, sizeof owned / sizeof *owned);
 }
 
 static uint32_t root_of(joining *j, uint32_t i) {
@@ -282,7 +272,8 @@ conic_status conic_mesh_clusters_find(conic_context *context, const conic_mesh *
   }
   if (status == CONIC_OK)
     status = collect_clusters(&j, adjacency, clusters);
-  end_joining(&j);
+  conic_memory_release_these(context, j.joints, j.keys, j.queue.slots, j.sums, j.ring, j.parent, j.degree, j.grown,
+                             j.is_new);
   if (status != CONIC_OK)
     conic_mesh_clusters_release(context, clusters);
   return status;

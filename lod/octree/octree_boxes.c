@@ -87,14 +87,6 @@ static void find_box(const conic_octree *octree, size_t i_node, double box[2][3]
   }
 }
 
-static void paint_box(const box_picture *p, size_t i_node) {
-  double box[2][3];
-  float color[3];
-  find_box(p->octree, i_node, box);
-  conic_number_color((uint32_t)i_node, color);
-  conic_box_lines_paint(p->camera, p->near_z, p->image->planes[CONIC_PLANE_Z], p->map, (const double(*)[3])box, color);
-}
-
 static conic_status paint_picture(box_picture *p) {
   size_t n_of_depth[CONIC_OCTREE_DEPTH] = {0};
   conic_context *context = p->octree->context;
@@ -108,7 +100,12 @@ static conic_status paint_picture(box_picture *p) {
     if (p->depth[i] == p->level) {
       if (n++ % 1024 == 0)
         status = conic_progress(context, "boxes", (double)i / (double)p->octree->n_nodes);
-      paint_box(p, i);
+      double box[2][3];
+      float color[3];
+      find_box(p->octree, i, box);
+      conic_number_color((uint32_t)i, color);
+      conic_box_lines_paint(p->camera, p->near_z, p->image->planes[CONIC_PLANE_Z], p->map, (const double(*)[3])box,
+                            color);
     }
   return status;
 }
@@ -124,10 +121,11 @@ conic_status conic_octree_draw_boxes(const conic_octree *octree, const conic_cam
   conic_status status = conic_image_allocate(context, image->width, image->height, 1u << CONIC_PLANE_RGBA, map);
   if (status != CONIC_OK)
     return status;
-  p.part_of_node = conic_memory_allocate(context, octree->n_nodes, sizeof *p.part_of_node);
-  p.part_of_point = conic_memory_allocate(context, octree->n_points, sizeof *p.part_of_point);
-  p.depth = conic_memory_allocate(context, octree->n_nodes, 1);
-  status = p.part_of_node && p.part_of_point && p.depth ? paint_picture(&p) : CONIC_ERROR_MEMORY;
+  status =
+      conic_memory_allocate_these(context, CONIC_ROOM(p.part_of_node, octree->n_nodes),
+                                  CONIC_ROOM(p.part_of_point, octree->n_points), CONIC_ROOM(p.depth, octree->n_nodes));
+  if (status == CONIC_OK)
+    status = paint_picture(&p);
   conic_memory_release_these(context, p.part_of_node, p.part_of_point, p.depth);
   if (status != CONIC_OK)
     conic_image_release(context, map);

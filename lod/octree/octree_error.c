@@ -327,9 +327,8 @@ static size_t count_parts(const conic_octree *octree, size_t root, size_t part) 
 
 static void release_around(const neighbourhood *around) {
   conic_context *context = around->pass->octree->context;
-  void *const owned[] = {around->numbers,     around->first_leaf, around->members,      around->near_numbers,
-                         around->near_blocks, around->near.flat,  around->near.are_flat};
-  conic_memory_release_all(context, owned, sizeof owned / sizeof *owned);
+  conic_memory_release_these(context, around->numbers, around->first_leaf, around->members, around->near_numbers,
+                             around->near_blocks, around->near.flat, around->near.are_flat);
 }
 
 /* Lays out the arrays of discs: `stride` of each number, and a block's. */
@@ -366,16 +365,12 @@ static conic_status make_room_for_discs(neighbourhood *around, size_t n_own) {
   release_around(around);
   size_t stride = room + WHOLE - room % WHOLE;
   around->room = room;
-  around->numbers = conic_memory_allocate(context, stride, NUMBERS * sizeof *around->numbers);
-  around->first_leaf = conic_memory_allocate(context, n_own, sizeof *around->first_leaf);
-  around->members = conic_memory_allocate(context, n_own, sizeof *around->members);
   size_t n_blocks = stride / CONIC_DISC_BLOCK;
-  around->near_numbers = conic_memory_allocate(context, n_blocks, 6 * sizeof *around->near_numbers);
-  around->near_blocks = conic_memory_allocate(context, n_blocks, sizeof *around->near_blocks);
-  near->flat = conic_memory_allocate(context, n_blocks, sizeof *near->flat);
-  near->are_flat = conic_memory_allocate(context, n_blocks / CONIC_DISC_BLOCK + 1, sizeof *near->are_flat);
-  if (!around->numbers || !around->first_leaf || !around->members || !around->near_numbers || !around->near_blocks ||
-      !near->flat || !near->are_flat)
+  if (conic_memory_allocate_these(context, CONIC_ROOM(around->numbers, NUMBERS * stride),
+                                  CONIC_ROOM(around->first_leaf, n_own), CONIC_ROOM(around->members, n_own),
+                                  CONIC_ROOM(around->near_numbers, 6 * n_blocks),
+                                  CONIC_ROOM(around->near_blocks, n_blocks), CONIC_ROOM(near->flat, n_blocks),
+                                  CONIC_ROOM(near->are_flat, n_blocks / CONIC_DISC_BLOCK + 1)) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   lay_out_discs(around->numbers, stride, discs);
   lay_out_list(around->near_numbers, around->near_blocks, n_blocks, &near->blocks);

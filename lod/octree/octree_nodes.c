@@ -13,12 +13,11 @@ void conic_octree_destroy(conic_octree *octree) {
     return;
   conic_context *context = octree->context;
   conic_splats_release(context, &octree->owned);
-  void *const owned[] = {
-      octree->owned_index, octree->owned_clips,  octree->clip_of_point, octree->owned_codes, octree->owned_leaf_codes,
-      octree->drawn,       octree->drawn_leaves, octree->center[0],     octree->center[1],   octree->center[2],
-      octree->radius,      octree->error,        octree->cone,          octree->normal[0],   octree->normal[1],
-      octree->normal[2],   octree->excess,       octree->end,           octree->first_leaf};
-  conic_memory_release_all(context, owned, sizeof owned / sizeof *owned);
+  conic_memory_release_these(context, octree->owned_index, octree->owned_clips, octree->clip_of_point,
+                             octree->owned_codes, octree->owned_leaf_codes, octree->drawn, octree->drawn_leaves,
+                             octree->center[0], octree->center[1], octree->center[2], octree->radius, octree->error,
+                             octree->cone, octree->normal[0], octree->normal[1], octree->normal[2], octree->excess,
+                             octree->end, octree->first_leaf);
   conic_mapping_close(context, &octree->mapping);
   conic_memory_release(context, octree);
 }

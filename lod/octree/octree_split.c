@@ -236,13 +236,9 @@ conic_status conic_octree_split(conic_context *context, conic_split *split) {
   split->n_nodes = 0;
   if (split->n < 2)
     return CONIC_OK;
-  for (int axis = 0; axis < 3; axis++)
-    s.scratch[axis] = conic_memory_allocate(context, split->n, sizeof(float));
-  s.scratch_index = conic_memory_allocate(context, split->n, sizeof(uint32_t));
-  s.octants = conic_memory_allocate(context, split->n, 1);
-  s.children = conic_memory_allocate(context, split->n, 1);
-  if (!s.scratch[0] || !s.scratch[1] || !s.scratch[2] || !s.scratch_index || !s.octants || !s.children)
-    status = CONIC_ERROR_MEMORY;
+  status = conic_memory_allocate_these(context, CONIC_ROOM(s.scratch[0], split->n), CONIC_ROOM(s.scratch[1], split->n),
+                                       CONIC_ROOM(s.scratch[2], split->n), CONIC_ROOM(s.scratch_index, split->n),
+                                       CONIC_ROOM(s.octants, split->n), CONIC_ROOM(s.children, split->n));
   if (status == CONIC_OK)
     status = split_top(context, &s, 0, split->n, 0);
   if (status == CONIC_OK)

@@ -71,12 +71,6 @@ static void key_task(void *data, size_t i_task) {
     job->items[i] = (conic_radix_item){key_of(job, i), (uint32_t)i};
 }
 
-static void keep_seen(cells_job *job) {
-  for (size_t i = 0; i < job->from->count; i++)
-    if (job->items[i].key != IS_CULLED)
-      job->items[job->n++] = job->items[i];
-}
-
 /* The number of each splat's clip lines, or CONIC_NO_CLIP; null where there are none. */
 static conic_status number_clips(conic_context *context, cells_job *job) {
   const conic_splats *from = job->from;
@@ -314,7 +308,9 @@ conic_status conic_screen_cells_find(conic_context *context, const conic_splats 
     conic_octree_loops_init(&job.loops, isa);
     conic_disc_samples_init(&job.samples);
     conic_parallel_for(context, (n + ITEMS_A_TASK - 1) / ITEMS_A_TASK, key_task, &job);
-    keep_seen(&job);
+    for (size_t i = 0; i < job.from->count; i++)
+      if (job.items[i].key != IS_CULLED)
+        job.items[job.n++] = job.items[i];
     cells->n_culled = n - job.n;
     status = conic_radix_sort(context, job.items, job.n, 64);
   }

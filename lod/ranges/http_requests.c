@@ -234,7 +234,6 @@ static int gather_parts(conic_http_ranges *http, conic_http_transfer *t) {
   return 0;
 }
 
-/* Sends requests over free connections, as many as keep the link busy. */
 void conic_http_send_requests(conic_http_ranges *http) {
   for (int i = 0; i < http->options.n_connections; i++) {
     conic_http_transfer *t = &http->transfers[i];

@@ -34,15 +34,6 @@ static void sink(conic_range_queue *queue, size_t i) {
   }
 }
 
-static void take_item(conic_range_queue *queue, size_t i, conic_queued_range *item) {
-  *item = queue->items[i];
-  queue->items[i] = queue->items[--queue->n];
-  if (i < queue->n) {
-    rise(queue, i);
-    sink(queue, i);
-  }
-}
-
 conic_status conic_range_queue_push(conic_context *context, conic_range_queue *queue, const conic_queued_range *item) {
   conic_status status = conic_memory_append(context, &queue->items, &queue->n, &queue->room, item, sizeof *item);
   if (status == CONIC_OK)
@@ -64,7 +55,12 @@ int conic_range_queue_pop(conic_range_queue *queue, double now_s, conic_queued_r
     if (best == queue->n)
       return 0;
   }
-  take_item(queue, best, item);
+  *item = queue->items[best];
+  queue->items[best] = queue->items[--queue->n];
+  if (best < queue->n) {
+    rise(queue, best);
+    sink(queue, best);
+  }
   return 1;
 }
 

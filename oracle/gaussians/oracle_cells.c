@@ -99,11 +99,11 @@ static conic_status sort_pixels(cell_job *j) {
   const oracle_bound_request *b = j->b;
   j->across = ((size_t)b->width + (size_t)j->edge - 1) / (size_t)j->edge;
   j->n_cells = j->across * (((size_t)b->height + (size_t)j->edge - 1) / (size_t)j->edge);
-  j->begin = conic_memory_allocate_zeroed(b->context, j->n_cells + 1, sizeof *j->begin);
-  j->pixel_begin = conic_memory_allocate_zeroed(b->context, j->n_cells + 1, sizeof *j->pixel_begin);
-  j->pixels = conic_memory_allocate(b->context, b->n_pixels, sizeof *j->pixels);
-  size_t *places = conic_memory_allocate(b->context, j->n_cells + 1, sizeof *places);
-  if (j->begin && j->pixel_begin && j->pixels && places) {
+  size_t *places;
+  conic_status status = conic_memory_allocate_these(
+      b->context, CONIC_ZEROED(j->begin, j->n_cells + 1), CONIC_ZEROED(j->pixel_begin, j->n_cells + 1),
+      CONIC_ROOM(j->pixels, b->n_pixels), CONIC_ROOM(places, j->n_cells + 1));
+  if (status == CONIC_OK) {
     for (size_t i = 0; i < b->n_pixels; i++)
       j->pixel_begin[cell_of_pixel(j, pixel_asked(b, i))]++;
     places_of_counts(j->pixel_begin, j->n_cells);
@@ -111,7 +111,6 @@ static conic_status sort_pixels(cell_job *j) {
     for (size_t i = 0; i < b->n_pixels; i++)
       j->pixels[places[cell_of_pixel(j, pixel_asked(b, i))]++] = (uint32_t)i;
   }
-  conic_status status = j->begin && j->pixel_begin && j->pixels && places ? CONIC_OK : CONIC_ERROR_MEMORY;
   conic_memory_release(b->context, places);
   return status;
 }
@@ -278,24 +277,14 @@ static void bound_cell(void *data, size_t cell, int i_thread) {
     conic_gaussian_bound bound;
     size_t pixel = pixel_asked(b, j->pixels[k]);
     bound_one_pixel(b, w, n, pixel, i_thread, &bound);
-    b->take(b->data, j->pixels[k], pixel, &bound, i_thread);
+    if (b->take)
+      b->take(b->data, j->pixels[k], pixel, &bound, i_thread);
   }
-}
-
-static void release_cells(cell_job *j) {
-  conic_context *context = j->b->context;
-  for (int k = 0; j->workers && k < conic_context_threads(context); k++)
-    release_worker(context, &j->workers[k]);
-  conic_memory_release_these(context, j->begin, j->pixel_begin, j->entries, j->pixels, j->boxes, j->workers);
-}
-
-static int edge_for(const oracle_bound_request *b) {
-  return CELL_EDGE / b->samples > 1 ? CELL_EDGE / b->samples : 1;
 }
 
 conic_status conic_oracle_bound_all(const oracle_bound_request *b) {
   const int threads = conic_context_threads(b->context);
-  cell_job j = {.b = b, .edge = edge_for(b)};
+  cell_job j = {.b = b, .edge = CELL_EDGE / b->samples > 1 ? CELL_EDGE / b->samples : 1};
   conic_status status = sort_pixels(&j);
   if (status == CONIC_OK)
     status = sort_into_cells(&j);
@@ -306,7 +295,9 @@ conic_status conic_oracle_bound_all(const oracle_bound_request *b) {
   for (int k = 0; j.workers && k < threads; k++)
     if (j.workers[k].has_failed && status == CONIC_OK)
       status = CONIC_ERROR_MEMORY;
-  release_cells(&j);
+  for (int k = 0; j.workers && k < threads; k++)
+    release_worker(b->context, &j.workers[k]);
+  conic_memory_release_these(b->context, j.begin, j.pixel_begin, j.entries, j.pixels, j.boxes, j.workers);
   return status;
 }
 

@@ -18,8 +18,8 @@ typedef struct oracle_bound_request {
   int width, height;                       /* in pixels */
   const uint32_t *pixels;                  /* null: all */
   size_t n_pixels;
-  oracle_bound_taker *take;
-  oracle_meeting_taker *note; /* null: nobody asks */
+  oracle_bound_taker *take; /* null, as the next may be: nobody asks */
+  oracle_meeting_taker *note;
   void *data;
   const char *task; /* as which progress is reported; null: "verify" */
 } oracle_bound_request;

@@ -141,15 +141,6 @@ static void place_gaussians(void *data, size_t i_run) {
     conic_oracle_gaussian_place(&j->view, j->set, i, &j->gaussians[i]);
 }
 
-/* In the order that all pixels share, without what is never drawn. */
-static void sort_gaussians(job *j) {
-  j->n = 0;
-  for (size_t i = 0; i < j->set->count; i++)
-    if (j->gaussians[i].is_drawn)
-      j->gaussians[j->n++] = j->gaussians[i];
-  qsort(j->gaussians, j->n, sizeof *j->gaussians, compare_gaussians);
-}
-
 /* Composites what covers the pixel, nearest first. */
 static void composite(const job *j, const covering *coverings, size_t n, size_t pixel) {
   const conic_profile_row *rules = j->view.rules;
@@ -257,36 +248,21 @@ static void find_rays_of_row(void *data, size_t row) {
 static conic_status allocate_job(job *j, int width, int height) {
   conic_gaussian_reference *r = j->reference;
   const size_t n = (size_t)width * (size_t)height, threads = (size_t)conic_context_threads(j->context);
-  double **const singles[] = {&r->transparency, &r->z, &r->median_z, &r->inverse_z};
-  uint32_t **const words[] = {&r->count, &r->id, &r->last};
-  int is_done = 1;
   r->width = width;
   r->height = height;
-  for (size_t k = 0; k < sizeof singles / sizeof *singles; k++)
-    is_done &= (*singles[k] = conic_memory_allocate_zeroed(j->context, n, sizeof(double))) != NULL;
-  for (size_t k = 0; k < sizeof words / sizeof *words; k++)
-    is_done &= (*words[k] = conic_memory_allocate_zeroed(j->context, n, sizeof(uint32_t))) != NULL;
-  is_done &= (r->rgb = conic_memory_allocate_zeroed(j->context, n, 3 * sizeof(double))) != NULL;
-  is_done &= (r->normal = conic_memory_allocate_zeroed(j->context, n, 3 * sizeof(double))) != NULL;
-  is_done &= (j->gaussians = conic_memory_allocate(j->context, j->set->count, sizeof *j->gaussians)) != NULL;
-  is_done &= (j->workers = conic_memory_allocate_zeroed(j->context, threads, sizeof *j->workers)) != NULL;
-  for (size_t k = 0; is_done && k < threads; k++) {
+  conic_status status = conic_memory_allocate_these(
+      j->context, CONIC_ZEROED(r->transparency, n), CONIC_ZEROED(r->z, n), CONIC_ZEROED(r->median_z, n),
+      CONIC_ZEROED(r->inverse_z, n), CONIC_ZEROED(r->count, n), CONIC_ZEROED(r->id, n), CONIC_ZEROED(r->last, n),
+      CONIC_ZEROED(r->rgb, 3 * n), CONIC_ZEROED(r->normal, 3 * n), CONIC_ROOM(j->gaussians, j->set->count),
+      CONIC_ZEROED(j->workers, threads));
+  for (size_t k = 0; status == CONIC_OK && k < threads; k++) {
     gaussian_worker *w = &j->workers[k];
-    if (j->question == CONIC_GAUSSIAN_PROFILE) {
-      is_done = (w->coverings = conic_memory_allocate(j->context, j->set->count + 1, sizeof *w->coverings)) != NULL;
-      continue;
-    }
-    w->clouds = conic_memory_allocate(j->context, j->set->count, sizeof *w->clouds);
-    w->places = conic_memory_allocate(j->context, j->set->count, ORACLE_PLACES * sizeof *w->places);
-    is_done = w->clouds && w->places;
+    status = j->question == CONIC_GAUSSIAN_PROFILE
+                 ? conic_memory_allocate_these(j->context, CONIC_ROOM(w->coverings, j->set->count + 1))
+                 : conic_memory_allocate_these(j->context, CONIC_ROOM(w->clouds, j->set->count),
+                                               CONIC_ROOM(w->places, ORACLE_PLACES * j->set->count));
   }
-  return is_done ? CONIC_OK : CONIC_ERROR_MEMORY;
-}
-
-static void release_job(job *j) {
-  for (int k = 0; j->workers && k < conic_context_threads(j->context); k++)
-    conic_memory_release_these(j->context, j->workers[k].coverings, j->workers[k].clouds, j->workers[k].places);
-  conic_memory_release_these(j->context, j->view.rays, j->workers, j->gaussians);
+  return status;
 }
 
 /* The eye is −RᵀT; a profile that is named after a program has it in floats, as those programs do. */
@@ -321,7 +297,12 @@ static conic_status draw_gaussians_again(job *j) {
                                place_gaussians, j);
   if (status != CONIC_OK)
     return status;
-  sort_gaussians(j);
+  /* In the order that all pixels share, without what is never drawn. */
+  j->n = 0;
+  for (size_t i = 0; i < j->set->count; i++)
+    if (j->gaussians[i].is_drawn)
+      j->gaussians[j->n++] = j->gaussians[i];
+  qsort(j->gaussians, j->n, sizeof *j->gaussians, compare_gaussians);
   status = conic_parallel_told(j->context, "verify", 0.05, 1.0, (size_t)camera->height, draw_row_again, j);
   for (int k = 0; k < conic_context_threads(j->context); k++)
     j->reference->quadrature = oracle_max(j->reference->quadrature, j->workers[k].quadrature);
@@ -354,7 +335,9 @@ conic_status conic_gaussian_oracle_render(conic_context *context, const conic_ga
     conic_oracle_shutter_eye(camera, j.view.eye);
   j.view.prefilter = question == CONIC_GAUSSIAN_PROFILE ? own.prefilter : 0.0;
   conic_status status = draw_gaussians_again(&j);
-  release_job(&j);
+  for (int k = 0; j.workers && k < conic_context_threads(j.context); k++)
+    conic_memory_release_these(j.context, j.workers[k].coverings, j.workers[k].clouds, j.workers[k].places);
+  conic_memory_release_these(j.context, j.view.rays, j.workers, j.gaussians);
   if (status != CONIC_OK)
     conic_gaussian_reference_release(context, reference);
   return status;

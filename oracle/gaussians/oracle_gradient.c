@@ -183,20 +183,14 @@ static void add_band(oracle_gradient_job *j) {
 
 static conic_status make_gradient_room(oracle_gradient_job *j) {
   const size_t threads = (size_t)conic_context_threads(j->context), n = j->set->count;
-  int is_done = (j->sums = conic_memory_allocate(j->context, j->most_in_band, sizeof *j->sums)) != NULL;
-  is_done &= (j->is_touched = conic_memory_allocate(j->context, j->most_in_band, 1)) != NULL;
-  is_done &= (j->losses = conic_memory_allocate(j->context, j->across, sizeof *j->losses)) != NULL;
-  is_done &= (j->totals = conic_memory_allocate_zeroed(j->context, n, sizeof *j->totals)) != NULL;
-  is_done &= (j->is_shown = conic_memory_allocate_zeroed(j->context, n, 1)) != NULL;
-  is_done &= (j->workers = conic_memory_allocate_zeroed(j->context, threads, sizeof *j->workers)) != NULL;
-  for (size_t k = 0; is_done && k < threads; k++) {
-    gradient_worker *w = &j->workers[k];
-    is_done = conic_memory_allocate_these(j->context, CONIC_ROOM(w->shown, j->most_entries),
-                                          CONIC_ROOM(w->met, j->most_entries + 1)) == CONIC_OK;
-  }
-  if (is_done && j->judging)
-    return conic_oracle_judging_room(j);
-  return is_done ? CONIC_OK : CONIC_ERROR_MEMORY;
+  conic_status status = conic_memory_allocate_these(j->context, CONIC_ROOM(j->sums, j->most_in_band),
+                                                    CONIC_ROOM(j->is_touched, j->most_in_band),
+                                                    CONIC_ROOM(j->losses, j->across), CONIC_ZEROED(j->totals, n),
+                                                    CONIC_ZEROED(j->is_shown, n), CONIC_ZEROED(j->workers, threads));
+  for (size_t k = 0; status == CONIC_OK && k < threads; k++)
+    status = conic_memory_allocate_these(j->context, CONIC_ROOM(j->workers[k].shown, j->most_entries),
+                                         CONIC_ROOM(j->workers[k].met, j->most_entries + 1));
+  return status == CONIC_OK && j->judging ? conic_oracle_judging_room(j) : status;
 }
 
 conic_status conic_oracle_differentiate(oracle_gradient_job *j) {

@@ -216,16 +216,15 @@ void conic_oracle_add_gradient_bound(oracle_sum_bound *to, const oracle_sum_boun
 conic_status conic_oracle_judging_room(oracle_gradient_job *j) {
   oracle_gradient_judging *g = j->judging;
   const size_t threads = (size_t)conic_context_threads(j->context), n = j->most_entries + 1;
-  int is_done = (g->bounds = conic_memory_allocate(j->context, j->most_in_band, sizeof *g->bounds)) != NULL;
-  is_done &= (g->totals = conic_memory_allocate_zeroed(j->context, j->set->count, sizeof *g->totals)) != NULL;
-  is_done &= (g->of_threads = conic_memory_allocate_zeroed(j->context, threads, sizeof *g->of_threads)) != NULL;
-  for (size_t k = 0; is_done && k < threads; k++) {
+  conic_status status =
+      conic_memory_allocate_these(j->context, CONIC_ROOM(g->bounds, j->most_in_band),
+                                  CONIC_ZEROED(g->totals, j->set->count), CONIC_ZEROED(g->of_threads, threads));
+  for (size_t k = 0; status == CONIC_OK && k < threads; k++) {
     gradient_variants *v = &g->of_threads[k];
-    is_done =
-        conic_memory_allocate_these(j->context, CONIC_ROOM(v->all, n), CONIC_ROOM(v->list, n), CONIC_ROOM(v->errors, n),
-                                    CONIC_ROOM(v->base, n), CONIC_ROOM(v->other, n)) == CONIC_OK;
+    status = conic_memory_allocate_these(j->context, CONIC_ROOM(v->all, n), CONIC_ROOM(v->list, n),
+                                         CONIC_ROOM(v->errors, n), CONIC_ROOM(v->base, n), CONIC_ROOM(v->other, n));
   }
-  return is_done ? CONIC_OK : CONIC_ERROR_MEMORY;
+  return status;
 }
 
 void conic_oracle_judging_end(oracle_gradient_job *j) {

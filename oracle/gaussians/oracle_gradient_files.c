@@ -17,16 +17,16 @@ void conic_gaussian_weights_release(conic_context *context, conic_gaussian_weigh
 static conic_status allocate_weights(conic_context *context, size_t width, size_t height, int has_rgb, int has_alpha,
                                      int has_z, conic_gaussian_weights *w) {
   const size_t n = width * height;
-  int is_done = 1;
+  conic_status status = CONIC_OK;
   w->width = (int)width;
   w->height = (int)height;
   if (has_rgb)
-    is_done &= (w->rgb = conic_memory_allocate(context, n, 3 * sizeof *w->rgb)) != NULL;
-  if (has_alpha)
-    is_done &= (w->alpha = conic_memory_allocate(context, n, sizeof *w->alpha)) != NULL;
-  if (has_z)
-    is_done &= (w->z = conic_memory_allocate(context, n, sizeof *w->z)) != NULL;
-  return is_done ? CONIC_OK : CONIC_ERROR_MEMORY;
+    status = conic_memory_allocate_these(context, CONIC_ROOM(w->rgb, 3 * n));
+  if (status == CONIC_OK && has_alpha)
+    status = conic_memory_allocate_these(context, CONIC_ROOM(w->alpha, n));
+  if (status == CONIC_OK && has_z)
+    status = conic_memory_allocate_these(context, CONIC_ROOM(w->z, n));
+  return status;
 }
 
 static conic_status weights_of_image(conic_context *context, const char *path, conic_gaussian_weights *w) {

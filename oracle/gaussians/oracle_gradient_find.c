@@ -125,10 +125,6 @@ static void note_doubts(void *data, size_t pixel, const oracle_meeting *meetings
   }
 }
 
-static void pass_bound(void *data, size_t i, size_t pixel, const conic_gaussian_bound *bound, int i_thread) {
-  (void)data, (void)i, (void)pixel, (void)bound, (void)i_thread;
-}
-
 /* Of all pixels that have a weight. */
 conic_status conic_oracle_gradient_doubts(oracle_gradient_job *j, oracle_entry *e) {
   const size_t n = e->bounding.n_pixels, threads = (size_t)conic_context_threads(j->context);
@@ -142,7 +138,6 @@ conic_status conic_oracle_gradient_doubts(oracle_gradient_job *j, oracle_entry *
       if (conic_oracle_pixel_weights(j->weights, i, weights))
         pixels[e->bounding.n_pixels++] = (uint32_t)i;
     e->bounding.pixels = pixels;
-    e->bounding.take = pass_bound;
     e->bounding.note = note_doubts;
     e->bounding.surfaces = j->surfaces;
     e->bounding.data = j;

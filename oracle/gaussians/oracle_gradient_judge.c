@@ -49,43 +49,19 @@ size_t conic_oracle_place_in_kind(size_t at) {
 
 double conic_oracle_number_in(const conic_gaussian_gradient *g, size_t i, size_t at) {
   const size_t n_sh = 3 * (size_t)(g->sh_degree + 1) * (size_t)(g->sh_degree + 1), k = conic_oracle_place_in_kind(at);
-  switch (conic_oracle_number_kind(at)) {
-  case CONIC_GRADIENT_MEAN:
-    return g->mean[k][i];
-  case CONIC_GRADIENT_SCALE:
-    return g->scale[k] ? g->scale[k][i] : 0.0;
-  case CONIC_GRADIENT_ROTATION:
-    return g->rotation[k][i];
-  case CONIC_GRADIENT_OPACITY:
-    return g->opacity[i];
-  case CONIC_GRADIENT_SH:
+  const conic_gradient_kind kind = conic_oracle_number_kind(at);
+  double *const *const columns[CONIC_N_GRADIENT_KINDS] = {g->mean, g->scale, g->rotation, &g->opacity, NULL, g->place};
+  if (kind == CONIC_GRADIENT_SH)
     return k < n_sh ? g->sh[i * n_sh + k] : 0.0;
-  case CONIC_GRADIENT_PLACE:
-    return g->place[k][i];
-  }
-  return 0.0;
+  return columns[kind][k] ? columns[kind][k][i] : 0.0;
 }
 
 double conic_oracle_number_of(const oracle_parameters *p, const double *sums, size_t at) {
-  const size_t k = conic_oracle_place_in_kind(at);
-  switch (conic_oracle_number_kind(at)) {
-  case CONIC_GRADIENT_MEAN:
-    return p->mean[k];
-  case CONIC_GRADIENT_SCALE:
-    return p->scale[k];
-  case CONIC_GRADIENT_ROTATION:
-    return p->rotation[k];
-  case CONIC_GRADIENT_OPACITY:
-    return p->opacity;
-  case CONIC_GRADIENT_SH:
-    return p->sh[k];
-  case CONIC_GRADIENT_PLACE:
-    return sums[BY_PLACE + k];
-  }
-  return 0.0;
+  const double *const of_kinds[CONIC_N_GRADIENT_KINDS] = {p->mean,     p->scale, p->rotation,
+                                                          &p->opacity, p->sh,    sums + BY_PLACE};
+  return of_kinds[conic_oracle_number_kind(at)][conic_oracle_place_in_kind(at)];
 }
 
-/* What a number is multiplied by where stored values are meant. */
 double conic_oracle_raw_factor(const oracle_gradient_job *j, size_t i, size_t at) {
   const double o = (double)j->set->opacity[i];
   if (!j->gradient->is_raw || (conic_oracle_number_kind(at) != CONIC_GRADIENT_SCALE && at != 10))

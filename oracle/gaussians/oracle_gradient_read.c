@@ -14,12 +14,6 @@ static int degree_of_harmonics(size_t n) {
   return -1;
 }
 
-/* Whether a kind is there whole. */
-static void note_kind(conic_gaussian_gradient *g, conic_gradient_kind kind, int is_there) {
-  if (!is_there)
-    g->lacks |= (uint64_t)1 << kind;
-}
-
 /* --- .ply --- */
 
 /* The column that a property goes to: from *column on, `stride` apart. */
@@ -163,7 +157,8 @@ static void take_gradient_arrays(const gradient_arrays *a, conic_gaussian_gradie
                                                           &g->opacity, &g->sh,   g->place};
   for (int kind = 0; kind < CONIC_N_GRADIENT_KINDS; kind++) {
     const size_t n = a->n_columns[kind];
-    note_kind(g, (conic_gradient_kind)kind, n > 0);
+    if (n == 0)
+      g->lacks |= (uint64_t)1 << kind;
     for (size_t i = 0; i < a->n * n; i++)
       if (kind == CONIC_GRADIENT_SH)
         g->sh[i] = conic_numpy_array_at(&a->arrays[kind], i);

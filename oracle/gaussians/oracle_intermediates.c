@@ -145,10 +145,6 @@ static void note_transmittances(void *data, size_t pixel, const oracle_meeting *
                 find_transmittance(meetings, n, k));
 }
 
-static void forget_bound(void *data, size_t i, size_t pixel, const conic_gaussian_bound *bound, int i_thread) {
-  (void)data, (void)i, (void)pixel, (void)bound, (void)i_thread;
-}
-
 /* At the pixels that hold a mean. */
 static conic_status find_transmittances(intermediates_finding *j) {
   oracle_bound_request *b = &j->e->bounding;
@@ -164,7 +160,6 @@ static conic_status find_transmittances(intermediates_finding *j) {
     if (is_asked[i])
       pixels[b->n_pixels++] = (uint32_t)i;
   b->pixels = pixels;
-  b->take = forget_bound;
   b->note = note_transmittances;
   b->data = j;
   b->task = "transmittances";

@@ -83,10 +83,12 @@ static void fill_entry(const oracle_doubting *d, const oracle_meeting *m, listin
 /* Bounds the meetings that may cover, and copies their notes back to the list of all. */
 static conic_status bound_meetings(const oracle_bound_request *b, const oracle_surface *surface,
                                    oracle_meeting *meetings, size_t n, conic_gaussian_bound *bound) {
-  oracle_meeting *those = conic_memory_allocate(b->context, n, sizeof *those);
-  size_t *from = conic_memory_allocate(b->context, n, sizeof *from), n_those = 0;
-  oracle_step *steps = conic_memory_allocate(b->context, n, sizeof *steps);
-  if (those && from && steps) {
+  oracle_meeting *those;
+  size_t *from, n_those = 0;
+  oracle_step *steps;
+  conic_status status =
+      conic_memory_allocate_these(b->context, CONIC_ROOM(those, n), CONIC_ROOM(from, n), CONIC_ROOM(steps, n));
+  if (status == CONIC_OK) {
     for (size_t i = 0; i < n; i++)
       if (meetings[i].may_cover) {
         from[n_those] = i;
@@ -96,7 +98,6 @@ static conic_status bound_meetings(const oracle_bound_request *b, const oracle_s
     for (size_t i = 0; i < n_those; i++)
       meetings[from[i]].noted = those[i].noted;
   }
-  conic_status status = those && from && steps ? CONIC_OK : CONIC_ERROR_MEMORY;
   conic_memory_release_these(b->context, those, from, steps);
   return status;
 }

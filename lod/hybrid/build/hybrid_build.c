@@ -146,13 +146,6 @@ static void part_from_others(building *b) {
   a->n_joints = n;
 }
 
-/* They are numbered by their first faces: others come last. */
-static void count_own(building *b) {
-  for (size_t i = 0; i < b->flat.count && i < b->n_own; i++)
-    if (b->clusters.of_face[i] != CONIC_NO_CLUSTER && b->clusters.of_face[i] >= b->n_own_clusters)
-      b->n_own_clusters = (size_t)b->clusters.of_face[i] + 1;
-}
-
 static conic_status find_clusters(building *b) {
   const conic_clustering_options options = {b->options->phase1, b->options->phase2, most_area_of(b)};
   conic_clustered_mesh *mesh = &b->mesh;
@@ -173,8 +166,10 @@ static conic_status find_clusters(building *b) {
                  : conic_mesh_clusters_find(b->context, &mesh->mesh, &b->adjacency, &options, &b->clusters);
   if (status == CONIC_OK && b->kept)
     status = group_kept(b->context, b->kept, &b->clusters);
-  if (status == CONIC_OK)
-    count_own(b);
+  /* Clusters are numbered by their first faces: others come last. */
+  for (size_t i = 0; i < b->flat.count && i < b->n_own && status == CONIC_OK; i++)
+    if (b->clusters.of_face[i] != CONIC_NO_CLUSTER && b->clusters.of_face[i] >= b->n_own_clusters)
+      b->n_own_clusters = (size_t)b->clusters.of_face[i] + 1;
   if (status == CONIC_OK && b->n_own_clusters == 0)
     status = conic_fail(b->context, CONIC_ERROR_INPUT, "the mesh has no face that could be drawn");
   return status;
@@ -199,11 +194,12 @@ static void sort_faces(building *b) {
 /* Numbers the clusters as the hierarchy has them: near each other where they are near. */
 static conic_status order_clusters(building *b) {
   size_t n = b->clusters.n_clusters, n_own = b->n_own_clusters;
-  conic_hybrid_bound *bounds = conic_memory_allocate(b->context, n, sizeof *bounds);
-  uint32_t *order = conic_memory_allocate(b->context, n, sizeof *order);
-  uint32_t *rank = conic_memory_allocate(b->context, n, sizeof *rank);
-  uint8_t *is_gathered = conic_memory_allocate(b->context, n, 1), *is_kept = conic_memory_allocate(b->context, n, 1);
-  conic_status status = bounds && order && rank && is_gathered && is_kept ? CONIC_OK : CONIC_ERROR_MEMORY;
+  conic_hybrid_bound *bounds;
+  uint32_t *order, *rank;
+  uint8_t *is_gathered, *is_kept;
+  conic_status status =
+      conic_memory_allocate_these(b->context, CONIC_ROOM(bounds, n), CONIC_ROOM(order, n), CONIC_ROOM(rank, n),
+                                  CONIC_ROOM(is_gathered, n), CONIC_ROOM(is_kept, n));
   for (size_t i = 0; i < n && status == CONIC_OK; i++) {
     bounds[i] = conic_cluster_bound(&b->mesh, (uint32_t)i);
     is_kept[i] = (uint8_t)conic_cluster_is_kept(&b->mesh, (uint32_t)i);
@@ -223,8 +219,7 @@ static conic_status order_clusters(building *b) {
         b->clusters.of_face[i] = rank[b->clusters.of_face[i]];
     sort_faces(b);
   }
-  void *const owned[] = {is_kept, is_gathered, rank, order, bounds};
-  conic_memory_release_all(b->context, owned, sizeof owned / sizeof *owned);
+  conic_memory_release_these(b->context, is_kept, is_gathered, rank, order, bounds);
   return status;
 }
 

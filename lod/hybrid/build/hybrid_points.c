@@ -14,10 +14,6 @@ typedef struct points_job {
   conic_kept_splats kept;
 } points_job;
 
-static int is_dot_splat(const conic_splats *splats, size_t i) {
-  return splats->dot && splats->dot[i] != 0.0f;
-}
-
 /* What no picture shows is left out: splats that are not finite, or span no plane. */
 static int has_to_stay(const points_job *job, size_t i) {
   const conic_splats *s = job->splats;
@@ -130,7 +126,7 @@ static conic_status make_skin_mesh(points_job *job) {
       job->mesh.corners[i][k] = job->place[job->skin.corners[i][k]];
   for (int wants_dots = 0; wants_dots < 2; wants_dots++) {
     for (size_t i = 0; i < s->count; i++)
-      if (is_dot_splat(s, i) == wants_dots && has_to_stay(job, i))
+      if ((s->dot && s->dot[i] != 0.0f) == wants_dots && has_to_stay(job, i))
         keep_splat(job, i);
     job->kept.n_discs = wants_dots ? job->kept.n_discs : job->kept.n;
   }

@@ -74,10 +74,6 @@ static double node_px(const hybrid_planning *p, size_t i, uint32_t k) {
 
 /* --- what is chosen for an error --- */
 
-static int is_allowed(const hybrid_planning *p, const conic_hybrid_level *level) {
-  return p->only_kind < 0 || level->kind == (uint32_t)p->only_kind;
-}
-
 /* Of two levels of a cluster with as many primitives, whether the first is drawn faster. */
 static int is_faster(const hybrid_planning *p, const conic_hybrid_cluster *cluster, uint32_t a, uint32_t b) {
   const conic_hybrid_level *levels = p->hybrid->levels + cluster->first_level;
@@ -92,7 +88,7 @@ static uint32_t fewest(hybrid_planning *p, size_t i) {
   const double unit = p->units[i];
   uint32_t best = UINT32_MAX, least = UINT32_MAX;
   for (uint32_t k = cluster->n_levels; k-- > 0;) {
-    if (!is_allowed(p, &levels[k]) || levels[k].count > least)
+    if ((p->only_kind >= 0 && levels[k].kind != (uint32_t)p->only_kind) || levels[k].count > least)
       continue;
     if ((double)levels[k].error * unit > p->error_px ||
         !(cluster_px(p, i, k) <= p->error_px)) /* whatever reaches out */

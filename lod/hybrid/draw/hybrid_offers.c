@@ -72,10 +72,6 @@ double conic_hybrid_pixels_a_unit(const conic_hybrid_camera *view, const conic_h
   return pixels_a_unit(view, &seen, reach);
 }
 
-static double error_px_of(const conic_hybrid_camera *view, const sight *seen, const conic_hybrid_level *level) {
-  return level->error > 0.0f ? (double)level->error * pixels_a_unit(view, seen, (double)level->reach) : 0.0;
-}
-
 /* In steps: less where what differs is smaller than a pixel. */
 static double change_of(double pixels_a_unit, float change, float smear) {
   double smeared = smear > 0.0f ? (double)smear * pixels_a_unit : 0.0;
@@ -94,7 +90,7 @@ double conic_hybrid_point_change(const conic_hybrid_camera *view, const conic_hy
 double conic_hybrid_error_px(const conic_hybrid_camera *view, const conic_hybrid_bound *bound,
                              const conic_hybrid_level *level) {
   sight seen = look_at_bound(view, bound);
-  return error_px_of(view, &seen, level);
+  return level->error > 0.0f ? (double)level->error * pixels_a_unit(view, &seen, (double)level->reach) : 0.0;
 }
 
 double conic_hybrid_node_error_px(const conic_hybrid *hybrid, const conic_hybrid_camera *view,

@@ -9,16 +9,10 @@ CONIC_DEFINE_OPTIONS(conic_hybrid_view, .only_kind = -1, .color_error = CONIC_JU
 
 void conic_hybrid_selection_release(conic_context *context, conic_hybrid_selection *selection) {
   hybrid_scratch *kept = selection->scratch;
-  if (kept) {
-    void *const owned[] = {kept->choices,
-                           kept->seen_memory.pointer,
-                           kept->stages_memory.pointer,
-                           kept->splats_memory.pointer,
-                           kept->vertices_memory.pointer,
-                           kept->triangles_memory.pointer,
-                           kept->chunks_memory.pointer};
-    conic_memory_release_all(context, owned, sizeof owned / sizeof *owned);
-  }
+  if (kept)
+    conic_memory_release_these(context, kept->choices, kept->seen_memory.pointer, kept->stages_memory.pointer,
+                               kept->splats_memory.pointer, kept->vertices_memory.pointer,
+                               kept->triangles_memory.pointer, kept->chunks_memory.pointer);
   conic_memory_release(context, kept);
   memset(selection, 0, sizeof *selection);
 }
@@ -194,12 +188,6 @@ static conic_status hold_chunks(hybrid_selecting *s) {
   return conic_hybrid_store_hold(s->hybrid, kept->chunks, kept->n_chunks);
 }
 
-static void judge_cluster(const hybrid_selecting *s, const hybrid_choice *c) {
-  const conic_hybrid_cluster *cluster = &s->hybrid->clusters[c->cluster];
-  s->selection->n_clusters[s->hybrid->levels[c->level].kind]++;
-  s->selection->n_simpler += c->level != cluster->first_level + cluster->built;
-}
-
 /* What the choices come to. */
 static void judge_choices(const hybrid_selecting *s) {
   conic_hybrid_selection *selection = s->selection;
@@ -218,8 +206,11 @@ static void judge_choices(const hybrid_selecting *s) {
     selection->color_error = change > selection->color_error ? change : selection->color_error;
     selection->n_nodes += node && c->level != CONIC_HYBRID_POINT;
     selection->n_points += c->level == CONIC_HYBRID_POINT;
-    if (!node)
-      judge_cluster(s, c);
+    if (!node) {
+      const conic_hybrid_cluster *cluster = &s->hybrid->clusters[c->cluster];
+      s->selection->n_clusters[s->hybrid->levels[c->level].kind]++;
+      s->selection->n_simpler += c->level != cluster->first_level + cluster->built;
+    }
   }
 }
 

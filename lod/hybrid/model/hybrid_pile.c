@@ -167,15 +167,6 @@ void conic_hybrid_pile_end_node(conic_hybrid_pile *p, uint32_t i) {
 
 /* --- all --- */
 
-/* Levels of nodes follow those of clusters; those of a node that has none begin where the next one's do. */
-static void number_joined(conic_hybrid_pile *p) {
-  uint32_t next = (uint32_t)p->n_levels;
-  for (size_t i = 0; i < p->n_nodes; i++) {
-    p->nodes[i].first_level = next;
-    next += p->nodes[i].n_levels;
-  }
-}
-
 conic_status conic_hybrid_pile_finish(conic_hybrid_pile *p, conic_hybrid *h) {
   size_t n = p->n_levels + p->n_joined;
   if (p->n_clusters + p->n_nodes > UINT32_MAX || n + 2 * p->n_clusters > UINT32_MAX)
@@ -184,7 +175,12 @@ conic_status conic_hybrid_pile_finish(conic_hybrid_pile *p, conic_hybrid *h) {
       conic_memory_reserve(h->context, &p->levels, p->n_levels, n, &p->levels_room, sizeof *p->levels);
   if (status != CONIC_OK)
     return status;
-  number_joined(p);
+  /* Levels of nodes follow those of clusters; those of a node that has none begin where the next one's do. */
+  uint32_t next = (uint32_t)p->n_levels;
+  for (size_t i = 0; i < p->n_nodes; i++) {
+    p->nodes[i].first_level = next;
+    next += p->nodes[i].n_levels;
+  }
   if (p->n_joined > 0)
     memcpy(p->levels + p->n_levels, p->joined, p->n_joined * sizeof *p->joined);
   h->levels = p->levels;

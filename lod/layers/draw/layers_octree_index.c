@@ -26,13 +26,6 @@ static uint64_t parent_key(uint64_t key, uint8_t level) {
   return key >> shift << shift;
 }
 
-static void list_nodes(const conic_hierarchy *h, octree_places *places) {
-  for (size_t i = 0; i < h->n_nodes; i++)
-    if (h->nodes[i].is_page != CONIC_OCTREE_PAGE_DONE)
-      places->list[places->n++] = (octree_place){h->nodes[i].key, (uint32_t)i, h->nodes[i].level, 0};
-  qsort(places->list, places->n, sizeof *places->list, compare_octree_places);
-}
-
 /* Finds every node's parent. Says what is wrong, or null. */
 static const char *join_octree_places(const conic_hierarchy *h, octree_places *places, size_t *n_inner) {
   *n_inner = 0;
@@ -72,7 +65,10 @@ static conic_status make_places(const conic_layers *layers, octree_places *place
   places->list = conic_memory_allocate(layers->context, h->n_nodes, sizeof *places->list);
   if (!places->list)
     return CONIC_ERROR_MEMORY;
-  list_nodes(h, places);
+  for (size_t i = 0; i < h->n_nodes; i++)
+    if (h->nodes[i].is_page != CONIC_OCTREE_PAGE_DONE)
+      places->list[places->n++] = (octree_place){h->nodes[i].key, (uint32_t)i, h->nodes[i].level, 0};
+  qsort(places->list, places->n, sizeof *places->list, compare_octree_places);
   const char *wrong = join_octree_places(h, places, &n_inner);
   if (wrong)
     return conic_hierarchy_wrong(h, wrong);
@@ -138,10 +134,6 @@ static uint64_t first_number_of(const conic_layers_entry *entry) {
   return entry->n_bytes ? entry->offset : (mixed ^ mixed >> 31) >> 20;
 }
 
-static uint32_t add_drawn(uint32_t a, uint32_t b) {
-  return a < UINT32_MAX - b ? a + b : UINT32_MAX;
-}
-
 /* What is drawn in each place is its own and its share of what lies above: as much as each of its siblings has. */
 static void count_drawn(conic_layers_entry *entries, const octree_places *places) {
   for (size_t i = 0; i < places->n; i++) {
@@ -153,7 +145,7 @@ static void count_drawn(conic_layers_entry *entries, const octree_places *places
     for (uint32_t k = child; child && k < child + 8; k++) {
       int is_node = places->list[k].node != CONIC_NO_NODE;
       uint32_t share = is_node ? entries[i].n_drawn / n_nodes + 1 : 1;
-      entries[k].n_drawn = add_drawn(share, entries[k].n_samples);
+      entries[k].n_drawn = share < UINT32_MAX - entries[k].n_samples ? share + entries[k].n_samples : UINT32_MAX;
     }
   }
   for (size_t i = places->n; i-- > 0;) {

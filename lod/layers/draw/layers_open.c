@@ -213,9 +213,8 @@ void conic_layers_close(conic_layers *layers) {
   conic_renderer_destroy(layers->hider);
   if (layers->set)
     conic_layers_set_release(context, layers->set);
-  void *const owned[] = {layers->set, layers->facings, layers->entries, layers->first_sample, layers->name};
-  conic_memory_release_all(context, owned, sizeof owned / sizeof *owned);
-  conic_memory_release(context, layers);
+  conic_memory_release_these(context, layers->set, layers->facings, layers->entries, layers->first_sample, layers->name,
+                             layers);
 }
 
 void conic_layers_measure(const conic_layers *layers, float cutoff, conic_layers_scale *scale) {

@@ -65,15 +65,6 @@ static void spread_place(const window_plan *p, const conic_layers_place *place) 
   }
 }
 
-static void sum_cells(const window_plan *p) {
-  for (size_t i = 0; i < p->asked->cut->n; i++)
-    spread_place(p, &p->asked->cut->places[i]);
-  for (int row = 1; row <= p->w->n_rows; row++)
-    for (int column = 1; column <= p->w->n_columns; column++)
-      *corner_of(p, column, row) +=
-          *corner_of(p, column - 1, row) + *corner_of(p, column, row - 1) - *corner_of(p, column - 1, row - 1);
-}
-
 static double sum_of(const window_plan *p, const conic_window *c) {
   return *corner_of(p, c->x_end, c->y_end) - *corner_of(p, c->x_begin, c->y_end) - *corner_of(p, c->x_end, c->y_begin) +
          *corner_of(p, c->x_begin, c->y_begin);
@@ -143,8 +134,14 @@ conic_status conic_layers_windows_plan(const conic_layers_parting *parting, coni
   size_t n_corners = (size_t)(windows->n_columns + 1) * (size_t)(windows->n_rows + 1);
   conic_status status =
       conic_memory_allocate_these(context, CONIC_ROOM(windows->window_of, n_cells), CONIC_ZEROED(p.sums, n_corners));
-  if (status == CONIC_OK)
-    sum_cells(&p);
+  if (status == CONIC_OK) {
+    for (size_t i = 0; i < p.asked->cut->n; i++)
+      spread_place(&p, &p.asked->cut->places[i]);
+    for (int row = 1; row <= p.w->n_rows; row++)
+      for (int column = 1; column <= p.w->n_columns; column++)
+        *corner_of(&p, column, row) +=
+            *corner_of(&p, column - 1, row) + *corner_of(&p, column, row - 1) - *corner_of(&p, column - 1, row - 1);
+  }
   for (int row = 0; row < windows->n_rows && status == CONIC_OK; row += windows->rows_a_band) {
     int end = row + windows->rows_a_band;
     status = part_cells(&p, (conic_window){0, windows->n_columns, row, end < windows->n_rows ? end : windows->n_rows});

@@ -4,8 +4,7 @@
 #include "core/splats/point_values.h"
 
 void conic_layers_set_release(conic_context *context, conic_layers_set *set) {
-  void *const owned[] = {set->arrays, set->ids, set->lines, set->splats.clips, set->pieces};
-  conic_memory_release_all(context, owned, sizeof owned / sizeof *owned);
+  conic_memory_release_these(context, set->arrays, set->ids, set->lines, set->splats.clips, set->pieces);
   conic_point_values_destroy(context, set->named);
   memset(set, 0, sizeof *set);
 }

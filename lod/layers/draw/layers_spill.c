@@ -50,13 +50,13 @@ conic_status conic_layers_spill_begin(size_t block_count, conic_layers_spill *sp
   size_t n_windows = spill->windows->n_windows;
   spill->block_count = block_count < LEAST_BLOCK ? LEAST_BLOCK : block_count > MOST_BLOCK ? MOST_BLOCK : block_count;
   spill->splat_bytes = conic_layers_spill_bytes(spill->layers);
-  spill->heaps = conic_memory_allocate_zeroed(context, n_windows, sizeof *spill->heaps);
-  spill->begin = conic_memory_allocate(context, n_windows + 1, sizeof *spill->begin);
-  spill->blocks = conic_memory_allocate(context, n_windows, spill_block_bytes(spill));
-  spill->read = conic_memory_allocate(context, 1, spill_block_bytes(spill));
+  conic_status status = conic_memory_allocate_these(context, CONIC_ZEROED(spill->heaps, n_windows),
+                                                    CONIC_ROOM(spill->begin, n_windows + 1),
+                                                    CONIC_ROOM(spill->blocks, n_windows * spill_block_bytes(spill)),
+                                                    CONIC_ROOM(spill->read, spill_block_bytes(spill)));
   for (size_t i = 0; spill->heaps && i < n_windows; i++)
     spill->heaps[i].last_block = NO_BLOCK;
-  return spill->heaps && spill->begin && spill->blocks && spill->read ? name_file(spill) : CONIC_ERROR_MEMORY;
+  return status == CONIC_OK ? name_file(spill) : status;
 }
 
 /* What only putting aside needs. */
@@ -72,8 +72,7 @@ void conic_layers_spill_end(conic_layers_spill *spill) {
   if (spill->is_open)
     conic_pile_end(&spill->pile);
   release_parts(spill);
-  void *const owned[] = {spill->path, spill->heaps, spill->blocks, spill->read, spill->boxes};
-  conic_memory_release_all(context, owned, sizeof owned / sizeof *owned);
+  conic_memory_release_these(context, spill->path, spill->heaps, spill->blocks, spill->read, spill->boxes);
 }
 
 /* --- putting aside --- */

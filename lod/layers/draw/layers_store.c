@@ -86,30 +86,20 @@ static void link_newest(conic_layers_store *store, uint32_t cloud) {
   store->newest = cloud;
 }
 
-static void drop_cloud(conic_layers *layers, uint32_t cloud) {
-  conic_layers_store *store = &layers->store;
-  unlink_slot(store, cloud);
-  conic_memory_release(layers->context, store->slots[cloud].cloud);
-  store->slots[cloud].cloud = NULL;
-  store->n_bytes -= bytes_of(layers, cloud);
-}
-
 /* Drops what was not used for longest, so that there is room for so many bytes more. */
 static void make_room_for_bytes(conic_layers *layers, size_t n_bytes) {
   conic_layers_store *store = &layers->store;
   uint64_t bound = conic_layers_cache_bytes(layers);
   for (uint32_t cloud = store->oldest; cloud != CONIC_NO_CLOUD && store->n_bytes + n_bytes > bound;) {
     uint32_t newer = store->slots[cloud].newer;
-    if (store->slots[cloud].n_pins == 0)
-      drop_cloud(layers, cloud);
+    if (store->slots[cloud].n_pins == 0) {
+      unlink_slot(store, cloud);
+      conic_memory_release(layers->context, store->slots[cloud].cloud);
+      store->slots[cloud].cloud = NULL;
+      store->n_bytes -= bytes_of(layers, cloud);
+    }
     cloud = newer;
   }
-}
-
-static void pin(conic_layers_store *store, uint32_t cloud) {
-  store->slots[cloud].n_pins++;
-  unlink_slot(store, cloud);
-  link_newest(store, cloud);
 }
 
 static conic_range range_of_cloud(const conic_layers *layers, uint32_t cloud) {
@@ -332,8 +322,11 @@ conic_status conic_layers_store_load(conic_layers *layers, conic_layers_loading 
   conic_status status = layers->store.n_asked > 0 ? take_ahead(layers, loading) : CONIC_OK;
   loading->n_missing = loading->n_damaged = 0;
   for (size_t i = 0; i < loading->n; i++)
-    if (layers->store.slots[loading->clouds[i]].cloud)
-      pin(&layers->store, loading->clouds[i]);
+    if (layers->store.slots[loading->clouds[i]].cloud) {
+      layers->store.slots[loading->clouds[i]].n_pins++;
+      unlink_slot(&layers->store, loading->clouds[i]);
+      link_newest(&layers->store, loading->clouds[i]);
+    }
   for (size_t i = 0; i < loading->n && status == CONIC_OK; i++)
     if (!conic_layers_has_cloud(layers, loading->clouds[i])) {
       layers->store.slots[loading->clouds[i]].is_wanted = 1;

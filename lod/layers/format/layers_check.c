@@ -159,12 +159,6 @@ static conic_status make_stage(const layers_checking *c, const stage *above, con
                                      CONIC_ROOM(s->first, s->n_cells));
 }
 
-static void count_defects(const layers_checking *c, const stage *s) {
-  c->defects->coverage += s->is_bare != 0;
-  c->defects->spheres += s->is_outside != 0;
-  c->defects->cones += s->is_turned != 0;
-}
-
 static void tell_wrong(const layers_checking *c, uint32_t i_node, const char *wrong, uint64_t offset) {
   conic_log(c->context, CONIC_LOG_WARNING, "%s: cloud %u: %s (at byte %llu)", c->file->name, i_node, wrong,
             (unsigned long long)offset);
@@ -191,7 +185,9 @@ static conic_status check_below(layers_checking *c, stage *s, const char *wrong,
       hold_against(s, &c->stages[i]);
   for (uint32_t k = 0; k < 2 && entry->child != 0 && status == CONIC_OK; k++)
     status = check_layers_node(c, entry->child + k);
-  count_defects(c, s);
+  c->defects->coverage += s->is_bare != 0;
+  c->defects->spheres += s->is_outside != 0;
+  c->defects->cones += s->is_turned != 0;
   return status;
 }
 

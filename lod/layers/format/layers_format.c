@@ -256,22 +256,18 @@ static const char *check_tree(const conic_layers_header *header, const conic_lay
   return offset == header->file_bytes ? NULL : "the file should end elsewhere";
 }
 
-/* The table of a version 1: positions, normals, and colours where there are some. */
-static void assume_attributes(const conic_layers_header *header, conic_layers_schema *schema) {
-  conic_layers_schema_add(schema, CONIC_LAYERS_POSITION, "position", 0)->n_bytes = header->position_bytes;
-  conic_layers_schema_add(schema, CONIC_LAYERS_NORMAL, "normal", 0)->n_bytes = header->normal_bytes;
-  if (header->flags & CONIC_LAYERS_COLORS)
-    conic_layers_schema_add(schema, CONIC_LAYERS_COLOR, "color", 0)->n_bytes = header->color_bytes;
-}
-
 static conic_status read_attribute_table(conic_context *context, const char *name, conic_layers_header *header,
                                          const unsigned char *bytes) {
   conic_layers_schema *schema = &header->schema;
   for (uint32_t i = 0; i < schema->n; i++)
     conic_file_fields_read(attribute_fields, N_ATTRIBUTE_FIELDS, bytes + (size_t)i * CONIC_LAYERS_ATTRIBUTE_BYTES,
                            &schema->list[i]);
-  if (header->version == 1)
-    assume_attributes(header, schema);
+  if (header->version == 1) { /* positions, normals, and colours where there are some */
+    conic_layers_schema_add(schema, CONIC_LAYERS_POSITION, "position", 0)->n_bytes = header->position_bytes;
+    conic_layers_schema_add(schema, CONIC_LAYERS_NORMAL, "normal", 0)->n_bytes = header->normal_bytes;
+    if (header->flags & CONIC_LAYERS_COLORS)
+      conic_layers_schema_add(schema, CONIC_LAYERS_COLOR, "color", 0)->n_bytes = header->color_bytes;
+  }
   const char *wrong = conic_layers_schema_lay_out(schema);
   int has_colors = conic_layers_schema_find(schema, CONIC_LAYERS_COLOR) >= 0;
   if (!wrong && has_colors != ((header->flags & CONIC_LAYERS_COLORS) != 0))
