@@ -13,7 +13,7 @@ static size_t padded(size_t n) {
 size_t conic_tile_bytes(size_t n_references) {
   return CONIC_BAND_BLOCKS * sizeof(conic_block_sums) + sizeof(conic_nearest) +
          (CONIC_BAND_BLOCKS + 1) * sizeof(conic_kept) +
-         padded(n_references) * (2 * sizeof(conic_tile_entry) + 2 * sizeof(uint32_t));
+         padded(n_references) * (2 * sizeof(conic_tile_entry) + 4 * sizeof(uint32_t));
 }
 
 void conic_tile_place_scratch(conic_tile *tile, void *memory) {
@@ -25,13 +25,28 @@ void conic_tile_place_scratch(conic_tile *tile, void *memory) {
   scratch->entries = (conic_tile_entry *)(scratch->kept + CONIC_BAND_BLOCKS + 1);
   scratch->samples = scratch->entries + n;
   scratch->indices = (uint32_t *)(scratch->samples + n);
-  scratch->words = scratch->indices + n;
+  scratch->words = scratch->indices + 2 * n;
 }
 
-/* The splats that meet row i_row of the tile's blocks. */
+static size_t select_row(const conic_tile *tile, const conic_raster_loops *loops, int i_row, size_t at) {
+  const conic_tile_scratch *scratch = &tile->scratch;
+  return loops->bins.select(scratch->entries, tile->n_references, UINT32_C(0x10000) << i_row, scratch->indices + at,
+                            scratch->words + at);
+}
+
+/* The splats that meet row i_row of the tile's blocks, the next after the last. Those of the row after it are listed
+ * behind them, so that the end of a row fetches what the next one begins with. */
 static void select_band(const conic_tile *tile, const conic_raster_loops *loops, int i_row, conic_band *band) {
-  band->n = loops->bins.select(tile->scratch.entries, tile->n_references, UINT32_C(0x10000) << i_row,
-                               tile->scratch.indices, tile->scratch.words);
+  const conic_tile_scratch *scratch = &tile->scratch;
+  size_t n_before = i_row > 0 ? band->n : 0;
+  band->n = i_row > 0 ? band->n_listed - n_before : select_row(tile, loops, 0, 0);
+  memmove(scratch->indices, scratch->indices + n_before, band->n * sizeof *scratch->indices);
+  memmove(scratch->words, scratch->words + n_before, band->n * sizeof *scratch->words);
+  for (size_t i = 0; i_row == 0 && i < band->n && i < CONIC_FETCHED_AHEAD; i++) {
+    __builtin_prefetch(&tile->projected->footprints[scratch->indices[i]]);
+    __builtin_prefetch(&tile->projected->surfaces[scratch->indices[i]]);
+  }
+  band->n_listed = band->n + (i_row + 1 < band->n_rows ? select_row(tile, loops, i_row + 1, band->n) : 0);
   band->y = tile->y_begin + i_row * CONIC_BLOCK_EDGE;
 }
 

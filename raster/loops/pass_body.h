@@ -32,14 +32,14 @@ typedef struct sources {
   const conic_ray *rays;
   const conic_clip_record *clips;
   const uint32_t *indices, *words;
-  size_t n;
+  size_t n, n_listed;
 } sources;
 
 CONIC_INLINE sources sources_of(const conic_band *band) {
   const conic_projected *projected = band->projected;
   return (sources){band->view,          band->view->support, projected->footprints,
                    projected->surfaces, projected->rays,     projected->clips,
-                   band->indices,       band->words,         band->n};
+                   band->indices,       band->words,         band->n,          band->n_listed};
 }
 
 CONIC_INLINE void evaluate(const sources *from, const conic_footprint *footprint, const splat_rows *rows, lanes x,
@@ -57,8 +57,8 @@ CONIC_INLINE splat_rows begin_splat(const sources *from, const conic_footprint *
 
 /* What the splat after the next few is read from, in this pass and the next. */
 CONIC_INLINE void prefetch_splat(const sources *from, size_t i) {
-  enum { AHEAD = 32 };
-  uint32_t later = from->indices[i + AHEAD < from->n ? i + AHEAD : i];
+  enum { AHEAD = CONIC_FETCHED_AHEAD };
+  uint32_t later = from->indices[i + AHEAD < from->n_listed ? i + AHEAD : i];
   __builtin_prefetch(&from->footprints[later]);
   __builtin_prefetch(&from->surfaces[later]);
 }

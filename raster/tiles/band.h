@@ -58,6 +58,9 @@ static inline uint32_t conic_word_last_row(uint32_t word) {
   return word >> 24;
 }
 
+/* Records are fetched for so many splats before they are read. */
+#define CONIC_FETCHED_AHEAD 32
+
 /* The fragments of so many splats are kept for a block; those of further ones are evaluated again. */
 #define CONIC_KEPT_SPLATS 512
 
@@ -114,7 +117,7 @@ typedef struct conic_band {
   const conic_view *view;
   const conic_projected *projected;
   const uint32_t *indices, *words; /* footprints whose boxes meet the band, in file order */
-  size_t n;
+  size_t n, n_listed; /* those of the next band follow, up to n_listed */
   int x, y, n_blocks;              /* its first pixel in the picture */
   int first_column, first_row;     /* of the picture, where the image begins */
   const conic_tile_rays *rays;     /* its tile's */
