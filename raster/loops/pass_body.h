@@ -4,7 +4,7 @@
 #include "raster/loops/crowd_body.h"
 
 /* The pixels of a band: the rows are the same in every part, the columns those of the first part and so on. NaN
- * outside the image: what is compared with it is not covered. */
+ * beside the band and outside the image: what is compared with it is not covered. */
 typedef struct sites {
   lanes x[(CONIC_BAND_BLOCKS + 1) * CONIC_PARTS], y;
 } sites;
@@ -18,8 +18,8 @@ CONIC_INLINE void find_sites(const conic_band *band, sites *s) {
   s->y = nan_beyond(lanes_rows() + band->y, band->view->height);
   for (int part = 0; part < band->n_blocks * CONIC_PARTS; part++)
     s->x[part] = nan_beyond(lanes_columns() + (band->x + part * (CONIC_LANES / CONIC_BLOCK_EDGE)), band->view->width);
-  for (int part = 0; part < CONIC_PARTS; part++)
-    s->x[CONIC_NO_BLOCK * CONIC_PARTS + part] = lanes_of(__builtin_nanf(""));
+  for (int part = band->n_blocks * CONIC_PARTS; part < (CONIC_NO_BLOCK + 1) * CONIC_PARTS; part++)
+    s->x[part] = lanes_of(__builtin_nanf(""));
 }
 
 /* What a band's loops read. A copy of their own: what they store might otherwise be these pointers, as far as a
@@ -167,15 +167,15 @@ CONIC_INLINE void pass_block(pass *p, const sources *from, const sites *s, const
     p->not_kept[block] = splat->i;
 }
 
-/* One splat in the blocks that its word names. Two are done in any case, the second perhaps beside the band: most small
- * splats have one or two, and which, no branch can foresee. */
+/* One splat in the blocks that its word names. Two are done in any case, the second perhaps one where it covers nothing:
+ * most small splats have one or two, and which, no branch can foresee. */
 CONIC_INLINE void pass_splat(pass *p, const sources *from, const sites *s, size_t i, splat_kind kind) {
   const uint32_t i_footprint = from->indices[i], word = from->words[i];
   const uint32_t first = conic_word_first(word), last = conic_word_last(word);
   const conic_footprint *footprint = &from->footprints[i_footprint];
   passing splat = {footprint, i, i_footprint, lanes_of(footprint->nearness), begin_splat(from, footprint, s->y, kind)};
   pass_block(p, from, s, &splat, first, kind);
-  pass_block(p, from, s, &splat, last > first ? first + 1 : CONIC_NO_BLOCK, kind);
+  pass_block(p, from, s, &splat, kind < SPLAT_SPECIAL || last > first ? first + 1 : CONIC_NO_BLOCK, kind);
   for (uint32_t block = first + 2; block <= last; block++)
     pass_block(p, from, s, &splat, block, kind);
 }
