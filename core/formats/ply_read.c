@@ -1,9 +1,8 @@
 #include "core/formats/readers.h"
 
-#include <stdatomic.h>
-
 #include "core/base/vectors.h"
 #include "core/formats/ply_columns.h"
+#include "core/formats/ply_shares.h"
 #include "core/formats/ply_texture.h"
 
 /* State of reading the vertices. */
@@ -71,74 +70,26 @@ static conic_status pass_rows(vertex_reader *reader, uint64_t end) {
   return status == CONIC_OK && skipped < n_bytes ? conic_ply_truncated(source) : status;
 }
 
-/* Rows that are read and converted by all threads. */
-typedef struct row_sharing {
-  vertex_reader *reader;
-  uint64_t offset; /* of the first in the file */
-  size_t first_point, n_rows, n_at_once;
-  char *rooms; /* a thread's: a block, and bytes of so many rows */
-  size_t room_bytes;
-  atomic_int status, is_cut;
-} row_sharing;
-
-enum { ROWS_A_SHARE = 1 << 14, LEAST_SHARED_BYTES = 1 << 16 };
-
-static void convert_rows(const row_sharing *s, const unsigned char *bytes, size_t n, size_t first, double *block) {
-  vertex_reader *reader = s->reader;
+static void convert_rows(void *data, const unsigned char *bytes, size_t n, size_t first, void *room) {
+  vertex_reader *reader = data;
+  double *block = room;
   size_t row_bytes = reader->source->element->least_row_bytes;
+  conic_splats *points = &reader->builder->model->points;
   for (size_t k = 0; k < n; k += CONIC_PLY_BLOCK) {
     size_t n_now = n - k < CONIC_PLY_BLOCK ? n - k : CONIC_PLY_BLOCK;
     conic_ply_convert_rows(reader->source, reader->properties, reader->layout.property, CONIC_PLY_N_COLUMNS,
                            bytes + k * row_bytes, n_now, CONIC_PLY_BLOCK, block);
-    conic_ply_layout_convert(&reader->layout, (const double(*)[CONIC_PLY_BLOCK])block, n_now,
-                             s->first_point + first + k, &reader->builder->model->points);
+    conic_ply_layout_convert(&reader->layout, (const double(*)[CONIC_PLY_BLOCK])block, n_now, points->count + first + k,
+                             points);
   }
 }
 
-static void read_share(void *data, size_t i_item, int i_thread) {
-  row_sharing *s = data;
-  char *room = s->rooms + (size_t)i_thread * s->room_bytes;
-  unsigned char *bytes = (unsigned char *)room + sizeof(conic_ply_block);
-  size_t row_bytes = s->reader->source->element->least_row_bytes, row = i_item * ROWS_A_SHARE, n_read;
-  size_t end = s->n_rows - row < ROWS_A_SHARE ? s->n_rows : row + ROWS_A_SHARE;
-  for (size_t n; row < end; row += n) {
-    n = end - row < s->n_at_once ? end - row : s->n_at_once;
-    conic_status status =
-        conic_input_read_at(s->reader->source->input, s->offset + row * row_bytes, bytes, n * row_bytes, &n_read);
-    if (status != CONIC_OK)
-      atomic_store(&s->status, status);
-    else if (n_read < n * row_bytes)
-      atomic_store(&s->is_cut, 1);
-    else
-      convert_rows(s, bytes, n, row, (double *)(void *)room);
-  }
-}
-
-/* Reads rows of a file that surely are there, in any order; all that need none is done by then. A file that another
- * program cuts meanwhile is left to who reads on. */
 static conic_status share_rows(vertex_reader *reader, uint64_t end) {
-  conic_ply_source *source = reader->source;
-  conic_context *context = source->input->context;
-  conic_splats *points = &reader->builder->model->points;
-  size_t row_bytes = source->element->least_row_bytes;
-  uint64_t n_there = conic_input_remaining_bytes(source->input) / row_bytes, left = end - source->i_row, skipped;
-  row_sharing s = {.reader = reader, .offset = conic_input_offset(source->input), .first_point = points->count};
-  s.n_rows = (size_t)(left < n_there ? left : n_there);
-  s.n_at_once = (LEAST_SHARED_BYTES + row_bytes - 1) / row_bytes;
-  s.room_bytes = conic_memory_rounded(sizeof(conic_ply_block) + s.n_at_once * row_bytes);
-  s.rooms = conic_memory_allocate(context, (size_t)conic_context_threads(context), s.room_bytes);
-  if (!s.rooms)
-    return CONIC_ERROR_MEMORY;
-  conic_status status =
-      conic_parallel_told(context, "read", 0.0, 1.0, (s.n_rows + ROWS_A_SHARE - 1) / ROWS_A_SHARE, read_share, &s);
-  conic_memory_release(context, s.rooms);
-  if (status == CONIC_OK)
-    status = (conic_status)atomic_load(&s.status);
-  if (status != CONIC_OK || atomic_load(&s.is_cut))
-    return status;
-  points->count += s.n_rows;
-  source->i_row += s.n_rows;
-  return conic_input_skip(source->input, s.n_rows * row_bytes, &skipped);
+  const conic_ply_taker taker = {convert_rows, reader, sizeof(conic_ply_block)};
+  const uint64_t before = reader->source->i_row;
+  conic_status status = conic_ply_share_rows(reader->source, end - before, &taker);
+  reader->builder->model->points.count += (size_t)(reader->source->i_row - before);
+  return status;
 }
 
 /* Whether threads may read the rows: those of a whole file, of whose points nothing is made one after the other. */
@@ -164,7 +115,7 @@ static conic_status read_blocks(vertex_reader *reader) {
     status = read_ply_block(reader, range.end, &n);
     if (status == CONIC_OK)
       status = append_block(reader, n);
-    if (status == CONIC_OK && range.end - source->i_row > ROWS_A_SHARE && can_share_rows(reader))
+    if (status == CONIC_OK && range.end - source->i_row > CONIC_PLY_SHARED_ROWS && can_share_rows(reader))
       status = share_rows(reader, range.end);
   }
   return status;

@@ -3,8 +3,6 @@
 #include "core/base/base.h"
 #include "core/base/power.h"
 
-enum { BLOCK = 4096 };
-
 /* e^x, to a few units of double's last place, without a branch, so that compilers do several at a time. Beyond ±150 all
  * floats are 0 or infinite. */
 static double exponential(double x) {
@@ -59,9 +57,7 @@ float conic_logit_of_opacity(float opacity) {
   return (float)(conic_logarithm((double)opacity) - conic_logarithm(1.0 - (double)opacity));
 }
 
-static void activate_block(void *data, size_t i_block) {
-  conic_gaussians *gaussians = data;
-  size_t first = i_block * BLOCK, left = gaussians->count - first, n = left < BLOCK ? left : BLOCK;
+void conic_gaussians_activate(conic_gaussians *gaussians, size_t first, size_t n) {
   for (int axis = 0; axis < 3; axis++) {
     float *scale = gaussians->scale[axis] ? gaussians->scale[axis] + first : NULL;
     if (scale && gaussians->log_scale[axis])
@@ -74,9 +70,4 @@ static void activate_block(void *data, size_t i_block) {
     memcpy(gaussians->logit_opacity + first, opacity, n * sizeof *opacity);
   for (size_t i = 0; i < n; i++)
     opacity[i] = (float)(1.0 / (1.0 + exponential(-(double)opacity[i])));
-}
-
-conic_status conic_gaussians_activate(conic_context *context, conic_gaussians *gaussians) {
-  size_t n_blocks = (gaussians->count + BLOCK - 1) / BLOCK;
-  return conic_parallel_runs(context, "read", 0.9, 1.0, n_blocks, 1024, activate_block, gaussians);
 }

@@ -13,6 +13,6 @@ float conic_opacity_of_logit(float logit);
 float conic_log_of_scale(float scale);
 float conic_logit_of_opacity(float opacity);
 
-/* Makes scales of the logarithms, and opacities of the logits, that a reader has put in their places; keeps these where
- * the set has arrays for them. Errors: CANCELLED. */
-conic_status conic_gaussians_activate(conic_context *context, conic_gaussians *gaussians);
+/* Of n Gaussians, makes scales of the logarithms, and opacities of the logits, that a reader has put in their places;
+ * keeps these where the set has arrays for them. */
+void conic_gaussians_activate(conic_gaussians *gaussians, size_t first, size_t n);
