@@ -32,8 +32,6 @@ struct conic_gaussian_picture {
   /* Of the window that is drawn. */
   const conic_gaussian_window *window;
   conic_gaussian_planes *planes;
-  conic_radix_item *order;
-  size_t n_ordered;
   conic_gaussian_bins bins;
   void **rooms; /* by thread */
   atomic_uint_fast64_t n_pairs;
@@ -99,30 +97,6 @@ static conic_status set_up_all(frame *f) {
   f->statistics.gaussians_drawn = f->n;
   f->statistics.gaussians_culled = count - f->n - f->statistics.gaussians_skipped;
   return status;
-}
-
-/* Keys are depths over 0, or of a mean behind the eye below: ordered as their bits are, once those below are turned. */
-static uint64_t key_of(float key) {
-  uint32_t bits = conic_bits_of_float(key);
-  return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
-}
-
-static int meets_window(const conic_gaussian_footprint *f, const conic_gaussian_window *w) {
-  return f->box[0][0] < w->end[0] && f->box[1][0] >= w->begin[0] && f->box[0][1] < w->end[1] &&
-         f->box[1][1] >= w->begin[1];
-}
-
-/* Of what meets the window. */
-static conic_status order_footprints(frame *f) {
-  f->order = conic_memory_allocate(f->context, f->n, sizeof *f->order);
-  if (!f->order)
-    return CONIC_ERROR_MEMORY;
-  f->n_ordered = 0;
-  for (size_t run = 0; run < f->n_runs; run++)
-    for (size_t i = run * SET_UP_RUN; i < run * SET_UP_RUN + f->n_of_run[run]; i++)
-      if (meets_window(&f->footprints[i], f->window))
-        f->order[f->n_ordered++] = (conic_radix_item){key_of(f->keys[i]), (uint32_t)i};
-  return conic_radix_sort(f->context, f->order, f->n_ordered, 32);
 }
 
 static conic_gaussian_target target_of(const frame *f) {
@@ -192,13 +166,9 @@ static void composite_tile(void *data, size_t i_tile, int i_thread) {
 /* Room for the longest list. */
 static conic_status make_rooms(frame *f) {
   const size_t threads = (size_t)conic_context_threads(f->context);
-  size_t longest = 0;
   if (f->view.rules->shape != CONIC_SHAPE_RAY && f->shape != CONIC_SHAPE_SIGHT)
     return CONIC_OK;
-  for (size_t tile = 0; tile < f->bins.n_tiles; tile++) {
-    size_t n = f->bins.tile_begin[tile + 1] - f->bins.tile_begin[tile];
-    longest = n > longest ? n : longest;
-  }
+  const size_t longest = conic_gaussian_bins_longest(&f->bins);
   f->rooms = conic_memory_allocate_zeroed(f->context, threads, sizeof *f->rooms);
   if (!f->rooms)
     return CONIC_ERROR_MEMORY;
@@ -238,8 +208,6 @@ static conic_status composite_on_device(frame *f) {
 }
 
 static void release_window(frame *f) {
-  conic_memory_release(f->context, f->order);
-  f->order = NULL;
   for (int i = 0; f->rooms && i < conic_context_threads(f->context); i++)
     conic_memory_release(f->context, f->rooms[i]);
   conic_memory_release(f->context, f->rooms);
@@ -261,12 +229,13 @@ const conic_gaussian_statistics *conic_gaussian_picture_statistics(const conic_g
 }
 
 static conic_status composite_window(frame *f) {
+  const conic_gaussian_runs runs = {f->footprints, f->keys, f->n_of_run, f->n_runs, SET_UP_RUN};
   double begin = conic_seconds_now(), now;
-  conic_status status = order_footprints(f);
-  f->statistics.seconds_sort += (now = conic_seconds_now()) - begin;
+  conic_status status = conic_gaussian_bins_make(f->context, &runs, f->window, &f->bins);
+  f->statistics.seconds_bin += (now = conic_seconds_now()) - begin;
   if (status == CONIC_OK)
-    status = conic_gaussian_bins_make(f->context, f->footprints, f->order, f->n_ordered, f->window, &f->bins);
-  f->statistics.seconds_bin += conic_seconds_now() - now;
+    status = conic_gaussian_bins_sort(f->context, &runs, &f->bins);
+  f->statistics.seconds_sort += conic_seconds_now() - now;
   now = conic_seconds_now();
   if (status == CONIC_OK)
     status = f->options.device ? composite_on_device(f) : composite_here(f);

@@ -182,7 +182,8 @@ static void store_block(gaussian_reader *reader, ply_block block, size_t first, 
 static int is_plain(const gaussian_reader *reader) {
   int is_one = reader->source->format == CONIC_PLY_LITTLE_ENDIAN && reader->gaussians->sh;
   for (int t = 0; t < reader->n_targets; t++)
-    is_one = is_one && reader->properties[reader->columns[t]].type == CONIC_PLY_FLOAT && reader->targets[t].white == 0.0;
+    is_one =
+        is_one && reader->properties[reader->columns[t]].type == CONIC_PLY_FLOAT && reader->targets[t].white == 0.0;
   return is_one;
 }
 
