@@ -23,7 +23,7 @@ CONIC_INLINE void add_planes_of_footprint(const conic_gaussian_list *list, uint3
 }
 
 enum { BATCH = 256, RAYS_AHEAD = 6 }; /* entries that are taken at a time; how far memory is asked for */
-enum { SORTED_IN_LANES = 2048 };      /* rows at most: what lanes do grows faster than n log n */
+enum { SORTED_AT_ONCE = 512 };        /* rows, of many that have come */
 
 CONIC_INLINE meeting_lanes meet_lanes(const CONIC_STORED conic_gaussian_ray *r, lanes dx, lanes dy) {
   lanes g[3], c[3];
@@ -191,50 +191,37 @@ CONIC_INLINE void mend_order(meetings *m, size_t n) {
     mend_equals(m, n);
 }
 
-/* Puts rows in order ray by ray. What waited comes first, so that of equal depths the earlier stays before. */
-static void sort_long_rows(meetings *m, size_t n) {
-  for (size_t lane = 0; lane < CONIC_LANES; lane++) {
-    size_t n_hits = 0;
-    for (size_t i = 0; i < n; i++) {
-      const uint32_t key = conic_bits_of_float(m->keys[i][lane]);
-      if (m->keys[i][lane] < __builtin_inff())
-        m->hits[n_hits++] = (conic_ray_hit){.z = m->z[key & m->by.numbers][lane], .which = key};
-    }
-    conic_sort_hits(m->hits, n_hits);
-    for (size_t i = 0; i < n; i++)
-      m->keys[i][lane] = i < n_hits ? conic_float_of_bits(m->hits[i].which) : __builtin_inff();
-  }
-}
-
-/* Sorts what waits, and from `first` on what has come. */
-CONIC_INLINE void sort_meetings(meetings *m, size_t first) {
+/* Of what waits, and n rows that have come: those that are named, or from `first` on. */
+CONIC_INLINE void sort_meetings(meetings *m, const conic_ray_hit *named, size_t first, size_t n) {
   const depth_keys before = m->by;
-  size_t n = m->n_waiting + (m->n - first);
+  const lanes infinity = lanes_of(__builtin_inff());
   m->by = keys_between(m->nearest, m->farthest, m->n);
   for (size_t i = 0; i < m->n_waiting; i++) {
     lanes key = lanes_load(m->keys[i]);
-    lanes_mask is_there = lanes_less(key, lanes_of(__builtin_inff()));
+    lanes_mask is_there = lanes_less(key, infinity);
     index_lanes which = lanes_to_bits(key) & before.numbers;
     key = key_of_depth(&m->by, lanes_gather(m->z[0], at_pixels(which)), which);
-    lanes_store(m->keys[i], lanes_select(is_there, key, lanes_of(__builtin_inff())));
+    lanes_store(m->keys[i], lanes_select(is_there, key, infinity));
   }
-  for (size_t i = first; i < m->n; i++) {
-    lanes_mask is_there = lanes_less(lanes_of(0.0f), lanes_load(m->alpha[i]));
-    lanes key = key_of_depth(&m->by, lanes_load(m->z[i]), lanes_of_index((uint32_t)i));
-    lanes_store(m->keys[m->n_waiting++], lanes_select(is_there, key, lanes_of(__builtin_inff())));
+  for (size_t i = 0; i < n; i++) {
+    const size_t row = named ? named[i].which : first + i;
+    lanes_mask is_there = lanes_less(lanes_of(0.0f), lanes_load(m->alpha[row]));
+    lanes key = key_of_depth(&m->by, lanes_load(m->z[row]), lanes_of_index((uint32_t)row));
+    lanes_store(m->keys[m->n_waiting++], lanes_select(is_there, key, infinity));
   }
-  if (n > SORTED_IN_LANES) {
-    sort_long_rows(m, n);
-    return;
-  }
-  sort_rows(m->keys, n);
-  mend_order(m, n);
+  sort_rows(m->keys, m->n_waiting);
+  mend_order(m, m->n_waiting);
 }
 
 CONIC_INLINE response response_in_order(const scene *s, const meetings *m, index_lanes which, int wants) {
   const conic_gaussian_list *list = s->list;
   const index_lanes at = which * (uint32_t)(sizeof(look) / sizeof(float));
-  response to = {.alpha = lanes_gather(m->alpha[0], at_pixels(which))};
+  const lanes none = lanes_of(0.0f); /* a list of initial values would go through memory */
+  response to;
+  to.covered = lanes_mask_of(0);
+  to.index = (index_lanes){0};
+  to.z = to.normal[0] = to.normal[1] = to.normal[2] = none;
+  to.alpha = lanes_gather(m->alpha[0], at_pixels(which));
   for (uint32_t k = 0; k < 3; k++)
     to.color[k] = lanes_gather(m->looks[0].color, at + k);
   if (wants != CONIC_GAUSSIAN_COLORS || conic_gaussian_list_surface(list, 0))
@@ -274,6 +261,29 @@ CONIC_INLINE void composite_before(const scene *s, meetings *m, float bound, pix
   m->nearest = m->n_waiting > 0 ? lanes_of(border) : infinity;
 }
 
+/* The same of many rows that have come, from `first` on: of rays side by side they are at about the same depths, so
+ * that those with the nearest come first, and most are composited before the next are sorted. */
+CONIC_INLINE void composite_in_parts(const scene *s, meetings *m, size_t first, float bound, pixels *p, int wants) {
+  const size_t n = m->n - first;
+  for (size_t i = 0; i < n; i++) {
+    lanes_row z;
+    float least = __builtin_inff();
+    lanes_store(z, lanes_select(lanes_less(lanes_of(0.0f), lanes_load(m->alpha[first + i])),
+                                lanes_load(m->z[first + i]), lanes_of(least)));
+    for (int lane = 0; lane < CONIC_LANES; lane++)
+      least = z[lane] < least ? z[lane] : least;
+    m->hits[i] = (conic_ray_hit){.z = least, .which = (uint32_t)(first + i)};
+  }
+  conic_sort_hits(m->hits, n);
+  for (size_t begin = 0, end; begin < n && lanes_any(p->goes_on); begin = end) {
+    end = begin + (m->n_waiting / 2 > SORTED_AT_ONCE ? m->n_waiting / 2 : SORTED_AT_ONCE);
+    end = end < n ? end : n;
+    m->nearest = lanes_min(m->nearest, lanes_of(m->hits[begin].z));
+    sort_meetings(m, m->hits + begin, 0, end - begin);
+    composite_before(s, m, end < n && m->hits[end].z < bound ? m->hits[end].z : bound, p, wants);
+  }
+}
+
 static void find_bounds(const conic_gaussian_list *list, conic_gaussian_shape shape, const meetings *m) {
   float bound = __builtin_inff();
   for (size_t i = list->n; i-- > 0;) {
@@ -305,8 +315,12 @@ CONIC_INLINE void composite_rays_in_vector(const scene *s, meetings *m, size_t p
     if (end < list->n &&
         (m->n - n_sorted < m->n_waiting / 2 || !lanes_any(p.goes_on & lanes_less(m->nearest, lanes_of(bound)))))
       continue; /* else what waits would be sorted with every batch */
-    sort_meetings(m, n_sorted);
-    composite_before(s, m, bound, &p, wants);
+    if (m->n - n_sorted > SORTED_AT_ONCE)
+      composite_in_parts(s, m, n_sorted, bound, &p, wants);
+    else {
+      sort_meetings(m, NULL, n_sorted, m->n - n_sorted);
+      composite_before(s, m, bound, &p, wants);
+    }
     n_sorted = m->n;
   }
   put_pixels(s->tile, &p, pixel, wants);

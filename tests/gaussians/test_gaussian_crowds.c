@@ -80,7 +80,7 @@ static void test_shapes(conic_context *context) {
   conic_gaussians_release(context, &scene);
 }
 
-/* So many that are all over the picture that lanes sort them ray by ray; some lie at one place. */
+/* So many that are all over the picture that they are sorted in parts; some lie at one place. */
 static void test_long(conic_context *context) {
   enum { N = 4000 };
   conic_gaussians scene = gaussians_random(context, N, 0, 0);
@@ -92,6 +92,23 @@ static void test_long(conic_context *context) {
     }
   }
   compare_profile(context, &scene, 9.0, CONIC_PROFILE_EXACT);
+  conic_gaussians_release(context, &scene);
+}
+
+/* Sheets one behind the other, none of whose rays wait for the next, before what may be nearer than all. */
+static void test_sheets(conic_context *context) {
+  enum { N = 1300 };
+  conic_gaussians scene = gaussians_random(context, N, 0, 0);
+  for (size_t i = 0; i < N; i++) {
+    scene.opacity[i] = 0.01f;
+    for (int k = 0; k < 4; k++)
+      scene.rotation[k][i] = k == 0 ? 1.0f : 0.0f;
+    for (int k = 0; k < 3; k++) {
+      scene.scale[k][i] = i == N - 1 ? 40.0f : k == 2 ? 1e-5f : 3.0f;
+      scene.position[k][i] = k == 2 ? 0.03f * (float)i : 0.0f;
+    }
+  }
+  compare_profile(context, &scene, 5.0, CONIC_PROFILE_EXACT);
   conic_gaussians_release(context, &scene);
 }
 
@@ -117,6 +134,7 @@ int main(void) {
   test_faint(context);
   test_shapes(context);
   test_long(context);
+  test_sheets(context);
   test_endless(context);
   conic_context_destroy(context);
   return check_result();
