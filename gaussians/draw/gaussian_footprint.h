@@ -59,7 +59,28 @@ conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const
                                           conic_gaussian_footprint *footprint, float *key, conic_gaussian_ray *ray,
                                           conic_gaussian_filter *filter, conic_gaussian_sight *sight, float normal[3]);
 
+/* Gaussians side by side, as lanes set up ellipses: what is left to do is done one by one. */
+enum { CONIC_ELLIPSES = 64, CONIC_MOST_FUNCTIONS = (CONIC_MAX_SH_DEGREE + 1) * (CONIC_MAX_SH_DEGREE + 1) };
+typedef struct conic_gaussian_ellipses {
+  double place[2][CONIC_ELLIPSES], half[2][CONIC_ELLIPSES]; /* of the box */
+  double spread[CONIC_ELLIPSES];                            /* of CONIC_COVERAGE_TILES: three standard deviations */
+  double form[3][CONIC_ELLIPSES], reach[CONIC_ELLIPSES], opacity[CONIC_ELLIPSES], z[CONIC_ELLIPSES],
+      key[CONIC_ELLIPSES];
+  float harmonics[CONIC_MOST_FUNCTIONS][CONIC_ELLIPSES];
+  uint64_t is_good, is_drawn; /* bits: whether all numbers are finite, else it has to be set up anew; it may be drawn */
+} conic_gaussian_ellipses;
+
+/* Whether lanes may set up the view's Gaussians. */
+int conic_gaussian_has_ellipses(const conic_gaussian_view *view);
+/* The same as conic_gaussian_set_up of Gaussian first + at, which is good. */
+conic_gaussian_fate conic_gaussian_take_ellipse(const conic_gaussian_view *view, const conic_gaussians *gaussians,
+                                                const conic_gaussian_ellipses *ellipses, size_t first, size_t at,
+                                                conic_gaussian_footprint *footprint, float *key);
+
 /* A Gaussian's colour in floats (docs/reference/gaussians.md, Colour): max(0, ½ + Σ sh·Y) seen along `from_eye`, of any
  * length, or by degree 0 alone. Returns 0 where it is not finite. */
 int conic_harmonic_color(const conic_gaussians *set, size_t i, int is_plain, const double from_eye[3], float color[3]);
+/* The same of what the harmonics are there, `stride` numbers apart. */
+int conic_harmonic_sum(const conic_gaussians *set, size_t i, int is_plain, const float *harmonics, size_t stride,
+                       float color[3]);
 #endif

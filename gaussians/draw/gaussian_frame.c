@@ -45,18 +45,32 @@ static size_t count_met_tiles(const conic_gaussian_footprint *f) {
   return across * down;
 }
 
+/* Gaussian i as footprint `to`. */
+static conic_gaussian_fate set_up_one(const frame *f, size_t i, size_t to) {
+  conic_gaussian_ray unused;
+  conic_gaussian_filter unused_filter;
+  conic_gaussian_sight unused_sight;
+  return conic_gaussian_set_up(&f->view, f->set, i, &f->footprints[to], &f->keys[to], f->rays ? &f->rays[to] : &unused,
+                               f->filters ? &f->filters[to] : &unused_filter,
+                               f->sights ? &f->sights[to] : &unused_sight, f->normals ? f->normals[to] : NULL);
+}
+
 static void set_up_run(void *data, size_t i_run) {
   frame *f = data;
   size_t begin = i_run * SET_UP_RUN, to = begin;
   size_t end = begin + SET_UP_RUN < f->set->count ? begin + SET_UP_RUN : f->set->count;
-  conic_gaussian_ray unused;
-  conic_gaussian_filter unused_filter;
-  conic_gaussian_sight unused_sight;
+  const int has_lanes = f->loops.set_up && !f->normals && conic_gaussian_has_ellipses(&f->view);
+  conic_gaussian_ellipses e;
   for (size_t i = begin; i < end; i++) {
-    conic_gaussian_fate fate =
-        conic_gaussian_set_up(&f->view, f->set, i, &f->footprints[to], &f->keys[to], f->rays ? &f->rays[to] : &unused,
-                              f->filters ? &f->filters[to] : &unused_filter, f->sights ? &f->sights[to] : &unused_sight,
-                              f->normals ? f->normals[to] : NULL);
+    const size_t at = (i - begin) % CONIC_ELLIPSES;
+    if (at == 0) {
+      e.is_good = 0;
+      if (has_lanes && end - i >= CONIC_ELLIPSES)
+        f->loops.set_up(&f->view, f->set, i, &e);
+    }
+    conic_gaussian_fate fate = e.is_good >> at & 1 ? conic_gaussian_take_ellipse(&f->view, f->set, &e, i - at, at,
+                                                                                 &f->footprints[to], &f->keys[to])
+                                                   : set_up_one(f, i, to);
     f->n_skipped_of_run[i_run] += fate == CONIC_GAUSSIAN_SKIPPED;
     f->n_entries_of_run[i_run] += fate == CONIC_GAUSSIAN_DRAWN ? count_met_tiles(&f->footprints[to]) : 0;
     to += fate == CONIC_GAUSSIAN_DRAWN;

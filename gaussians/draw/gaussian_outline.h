@@ -5,6 +5,10 @@
 
 /* How much larger a box is made than the formulas say, in pixels: more than their roundings. */
 #define CONIC_GAUSSIAN_SLACK_PX 0.0625
+/* How much more q is taken than the formula says: likewise. */
+#define CONIC_REACH_SLACK 1e-3
+/* Whose squares add up to 1 but for this, a quaternion was made a unit one in floats. */
+#define CONIC_UNIT_SLACK 0x1p-20
 
 static inline double conic_limited(double value, double least, double most) {
   return value > least ? (value < most ? value : most) : least;

@@ -8,12 +8,6 @@
 #include "gaussians/draw/unscented_box.h"
 #include "gaussians/draw/view_rays.h"
 
-/* Whose squares add up to 1 but for this, a quaternion was made a unit one in floats. */
-static const double unit_slack = 0x1p-20;
-
-/* How much more q is taken than the formula says: more than the roundings. */
-static const double reach_slack = 1e-3;
-
 static int is_number(double v) {
   return v - v == 0.0;
 }
@@ -35,7 +29,7 @@ static double read_shape(const conic_gaussians *set, size_t i, double q[4], coni
 
 static void place_axes(const conic_gaussian_view *view, const double q[4], double squares, conic_gaussian_placed *p) {
   const int as_is = view->rules->takes_rotation_as_is;
-  int is_as_it_is = as_is > 1 || (as_is && squares - 1.0 < unit_slack && 1.0 - squares < unit_slack);
+  int is_as_it_is = as_is > 1 || (as_is && squares - 1.0 < CONIC_UNIT_SLACK && 1.0 - squares < CONIC_UNIT_SLACK);
   double one_over = is_as_it_is ? 1.0 : 1.0 / sqrt(squares);
   const double unit[4] = {q[0] * one_over, q[1] * one_over, q[2] * one_over, q[3] * one_over};
   double rows[3][3];
@@ -82,7 +76,7 @@ static double reach_of(const conic_profile_row *rules, double opacity) {
   const double most = rules->greatest_half_q > 0.0 ? 2.0 * rules->greatest_half_q : INFINITY;
   if (!(least > 0.0))
     return most;
-  double reach = opacity >= least ? 2.0 * conic_logarithm(opacity / least) + reach_slack : 0.0;
+  double reach = opacity >= least ? 2.0 * conic_logarithm(opacity / least) + CONIC_REACH_SLACK : 0.0;
   return reach < most ? reach : most;
 }
 
@@ -332,7 +326,7 @@ static conic_gaussian_fate set_up_ray(const conic_gaussian_view *view, conic_gau
                                       conic_gaussian_footprint *f, conic_gaussian_ray *ray,
                                       conic_gaussian_filter *filter) {
   double least[2], most[2], unit_of, reach = reach_of(view->rules, p->opacity);
-  reach -= view->prefilter > 0.0 ? reach_slack : 0.0; /* a filter's box is a rule */
+  reach -= view->prefilter > 0.0 ? CONIC_REACH_SLACK : 0.0; /* a filter's box is a rule */
   if (!(reach > 0.0) || !conic_gaussian_project(view, p, reach, least, most))
     return CONIC_GAUSSIAN_CULLED;
   for (int axis = 0; axis < 2 && !lies_within_axes(view, p); axis++) {
@@ -500,6 +494,13 @@ static void choose_normal(const conic_gaussian_view *view, const conic_gaussian_
     normal[row] = (float)(side * p->world[row][axis]);
 }
 
+static void limit_color(const conic_profile_row *rules, double fade, float color[3]) {
+  for (int c = 0; c < 3; c++) {
+    color[c] = rules->color_most > 0.0 && color[c] > (float)rules->color_most ? (float)rules->color_most : color[c];
+    color[c] = (float)(fade * (double)color[c]);
+  }
+}
+
 conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const conic_gaussians *gaussians, size_t i,
                                           conic_gaussian_footprint *f, float *key, conic_gaussian_ray *ray,
                                           conic_gaussian_filter *filter, conic_gaussian_sight *sight, float normal[3]) {
@@ -543,10 +544,44 @@ conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const
     memcpy(from_eye, view->camera->cam_from_world[2], sizeof from_eye);
   if (!conic_harmonic_color(gaussians, i, rules->has_plain_color, from_eye, f->color))
     return CONIC_GAUSSIAN_SKIPPED;
-  for (int c = 0; c < 3; c++) {
-    f->color[c] =
-        rules->color_most > 0.0 && f->color[c] > (float)rules->color_most ? (float)rules->color_most : f->color[c];
-    f->color[c] = (float)(fade * (double)f->color[c]);
+  limit_color(rules, fade, f->color);
+  return CONIC_GAUSSIAN_DRAWN;
+}
+
+/* --- what lanes have begun --- */
+
+int conic_gaussian_has_ellipses(const conic_gaussian_view *view) {
+  return view->rules->shape == CONIC_SHAPE_ELLIPSE && !view->rays && !view->is_parallel &&
+         !conic_profile_limits_axes(view->rules) && !(view->rules->fade_z > 0.0);
+}
+
+conic_gaussian_fate conic_gaussian_take_ellipse(const conic_gaussian_view *view, const conic_gaussians *gaussians,
+                                                const conic_gaussian_ellipses *e, size_t first, size_t at,
+                                                conic_gaussian_footprint *f, float *key) {
+  const conic_profile_row *rules = view->rules;
+  const double place[2] = {e->place[0][at], e->place[1][at]};
+  double least[2], most[2];
+  if (!(e->is_drawn >> at & 1))
+    return CONIC_GAUSSIAN_CULLED;
+  for (int axis = 0; axis < 2; axis++) {
+    least[axis] = place[axis] - e->half[axis][at];
+    most[axis] = place[axis] + e->half[axis][at];
   }
+  if (rules->coverage == CONIC_COVERAGE_TILES)
+    cover_square(view, place, round_up(e->spread[at]), least, most);
+  if (!conic_gaussian_limit_box(view, least, most, f))
+    return CONIC_GAUSSIAN_CULLED;
+  if (!conic_harmonic_sum(gaussians, first + at, rules->has_plain_color, &e->harmonics[0][at], CONIC_ELLIPSES,
+                          f->color))
+    return CONIC_GAUSSIAN_SKIPPED;
+  limit_color(rules, 1.0, f->color);
+  take_reference(view, place[0], place[1], f);
+  f->half_reach = half_reach_of(e->reach[at]);
+  for (int k = 0; k < 3; k++)
+    f->form[k] = (float)e->form[k][at];
+  f->opacity = (float)e->opacity[at];
+  f->z = (float)e->z[at];
+  *key = (float)e->key[at];
+  f->index = (uint32_t)(first + at);
   return CONIC_GAUSSIAN_DRAWN;
 }

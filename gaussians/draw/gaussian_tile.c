@@ -185,6 +185,7 @@ static void composite_sights(const conic_gaussian_list *list, conic_gaussian_til
 CONIC_DEFINE_LOOPS(conic_gaussian_loops)
 
 void conic_gaussian_loops_scalar(conic_gaussian_loops *loops) {
+  loops->set_up = NULL;
   loops->composite[CONIC_SHAPE_ELLIPSE] = composite_ellipses;
   loops->composite[CONIC_SHAPE_RAY] = composite_rays;
   loops->composite[CONIC_SHAPE_DISC] = loops->composite[CONIC_SHAPE_SOLID] = composite_discs;

@@ -98,8 +98,12 @@ static inline const float *conic_gaussian_list_surface(const conic_gaussian_list
 }
 
 #ifndef CONIC_ON_DEVICE /* where no pointer is to a function */
-/* One slot a shape: composites the list in the tile, whose sums and T's begin. */
 typedef struct conic_gaussian_loops {
+  /* Sets up CONIC_ELLIPSES Gaussians of a view that conic_gaussian_has_ellipses; null in plain C, which does it one by
+   * one. */
+  void (*set_up)(const conic_gaussian_view *view, const conic_gaussians *gaussians, size_t first,
+                 conic_gaussian_ellipses *ellipses);
+  /* One slot a shape: composites the list in the tile, whose sums and T's begin. */
   void (*composite[CONIC_N_SHAPES])(const conic_gaussian_list *list, conic_gaussian_tile *tile);
 } conic_gaussian_loops;
 

@@ -168,7 +168,10 @@ static void composite_discs_in_lanes(const conic_gaussian_list *list, conic_gaus
 }
 
 #ifndef CONIC_ON_DEVICE
+#include "gaussians/loops/gaussian_ellipses_lanes.h"
+
 CONIC_FILL_LOOPS(conic_gaussian_loops) {
+  loops->set_up = set_up_ellipses_in_lanes;
   loops->composite[CONIC_SHAPE_ELLIPSE] = composite_ellipses_in_lanes;
   loops->composite[CONIC_SHAPE_RAY] = composite_rays_in_lanes;
   loops->composite[CONIC_SHAPE_DISC] = loops->composite[CONIC_SHAPE_SOLID] = composite_discs_in_lanes;
