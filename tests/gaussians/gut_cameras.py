@@ -277,6 +277,9 @@ def main():
         "fisheye": camera("fisheye", kind="fisheye"),
         "turned": camera("turned", kind="fisheye", lens="radial", distortion=[0.05, -0.03, 0.004, 0], fx=28, fy=29),
         "fourth": camera("fourth", kind="fisheye", lens="radial", distortion=[0.05, -0.02, 0.01, -0.01], fx=30, fy=31),
+        "barrel": camera("barrel", kind="fisheye", lens="radial", distortion=[-0.06, 0, 0, 0]),  # corners see nothing
+        # Two folds, at 1.30 and at 1.595: steps from 1.57 find the second.
+        "folded": camera("folded", kind="fisheye", lens="radial", distortion=[-0.3274, 0.0501, -0.0027, 0.0005]),
         "radial": camera("radial", lens="radial", distortion=[-0.2, 0.03, 0.01]),
         "opencv": camera("opencv", lens="opencv", distortion=[-0.25, 0.1, 0.004, -0.01, 0.01, 0.02, 0.01, 0.001]),
         "down": rolling("down", "top-to-bottom"),

@@ -8,7 +8,7 @@ PYTHONDONTWRITEBYTECODE=1 python3 "$1/tests/gaussians/gut_cameras.py" "$conic" >
 cat table
 
 # Its own judge: no pixel is wrong, and a picture of another lens is.
-for camera in fisheye turned fourth radial opencv strong down right up left; do
+for camera in fisheye turned fourth barrel folded radial opencv strong down right up left; do
   run_as_typed 0 verify large.ply --profile 3dgut-2025 --camera $camera.json --json v.json
   run_as_typed 0 render large.ply --profile 3dgut-2025 --camera $camera.json -o $camera.exr
   run_as_typed 0 judge large.ply --profile 3dgut-2025 --camera $camera.json --picture $camera.exr --floats own

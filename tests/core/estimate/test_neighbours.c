@@ -120,6 +120,7 @@ static void check_set(conic_context *context, size_t n, size_t k) {
     check_query(&tree, is_first, query, SIZE_MAX, k, HUGE_VAL);
   }
   check_slots(&tree, k);
+  check_slots(&tree, 1); /* of two that are each other's nearest, one bounds the other */
   conic_neighbours_release(context, &tree);
 }
 
