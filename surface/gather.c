@@ -113,7 +113,7 @@ static inline void look_up(const conic_surface *surface, uint32_t source, double
     size_t i = source & ~CONIC_CLUSTER_BIT;
     memcpy(place, surface->clusters.centroid[i], 3 * sizeof place[0]);
     *h = (double)surface->clusters.h[i];
-    *mass = surface->clusters.mass[i];
+    *mass = surface->clusters.mass[i]; /* NOLINT(clang-analyzer-core.NullDereference): without any no bit is set */
     return;
   }
   conic_vector_at(surface->tree.position, source, place);

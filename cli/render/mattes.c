@@ -198,7 +198,7 @@ static conic_status read_labels_of(matte_pass *pass, size_t i_input, size_t firs
     return status;
   if (model.points.scalar && model.points.count == n) {
     status = add_labels(pass, i_input, model.points.scalar, n, first);
-    pass->list[i_input].is_seen = 0;
+    pass->list[i_input].is_seen = 0; /* NOLINT(clang-analyzer-core.NullDereference): it lists all inputs */
   }
   conic_model_release(pass->context, &model);
   return status;

@@ -233,7 +233,7 @@ static void search_around(neighbour_search *s, const conic_neighbours_around *ar
     }
   }
   for (size_t i = 0; i < n; i++)
-    if (near2[i] <= s->limit2)
+    if (near2[i] <= s->limit2) /* NOLINT(clang-analyzer-core.UndefinedBinaryOperatorResult): i < n */
       search_leaf(s, leaves[i]);
 }
 

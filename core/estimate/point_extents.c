@@ -361,7 +361,7 @@ static double part_left(const spread_work *work, size_t slot) {
     for (size_t i = 0; i < neighbourhood->n_neighbours; i++)
       if (work->lengths[list[i]] >= 0.0)
         sort_in(sorted, n++, work->lengths[list[i]]);
-    most = GREATEST_EXCESS * sorted[n / 2];
+    most = GREATEST_EXCESS * sorted[n / 2]; /* NOLINT(clang-analyzer-core.UndefinedBinaryOperatorResult): n > 0 */
   }
   int is_dot = work->are_dots || work->estimate->dot[neighbourhood->tree.point_of_slot[slot]] != 0.0f;
   if (is_dot && most > GREATEST_DOT * work->usual_dot)

@@ -218,7 +218,7 @@ static conic_status order_chosen(const level_cutting *c, conic_radix_item *items
 static void fill_row(const level_cutting *c, const chosen *one, size_t at, conic_gaussians *set) {
   const conic_levels *l = c->levels;
   const size_t n = conic_harmonics_of_degree(set->sh_degree);
-  float row[CONIC_BLEND_MOST_FLOATS];
+  float row[CONIC_BLEND_MOST_FLOATS] = {0.0f};
   for (size_t k = 0; k < CONIC_BLEND_HARMONICS + n; k++)
     row[k] = number_of(l, one->cloud, k, one->i);
   if (c->wish->dilation > 0.0 && is_merged(l, one)) {

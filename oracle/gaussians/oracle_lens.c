@@ -220,7 +220,7 @@ static void see_by_lens(const oracle_gaussian_view *view, const double wanted[2]
     const double top = 1.0 + sum_of_powers(l.k, 3, q, 1.0, 0.0, &sizes[0]);
     const double bottom = 1.0 + sum_of_powers(l.k + 3, 3, q, 1.0, 0.0, &sizes[1]), growth = top / bottom;
     for (int k = 0; k < 2; k++) /* of top and bottom by q, times q */
-      slopes[k] = sum_of_powers(l.k + 3 * k, 3, q, 1.0, 1.0, &unused);
+      slopes[k] = sum_of_powers(l.k + (ptrdiff_t)3 * k, 3, q, 1.0, 1.0, &unused);
     const double by_q = q > 0.0 ? (slopes[0] - growth * slopes[1]) / bottom / q : 0.0;
     const double out[2] = {growth * a + 2.0 * p1 * a * b + p2 * (q + 2.0 * a * a) - wanted[0],
                            growth * b + p1 * (q + 2.0 * b * b) + 2.0 * p2 * a * b - wanted[1]};
