@@ -21,7 +21,7 @@ static void list_common(cli_session *session, int *is_help, cli_option common[N_
        0, 1024, .is_usual = 1, .acts.is_work = 1},
       {"json", CLI_TEXT, &session->json_path, "FILE", "write statistics of the run as JSON; - is standard output",
        .is_usual = 1, .acts.is_work = 1},
-      {"quiet", CLI_FLAG, &session->is_quiet, NULL, "no progress bar, no warnings", .is_usual = 1, .acts.is_work = 1},
+      {"quiet", CLI_FLAG, &session->is_quiet, NULL, "no progress bar, no warnings; results are printed", .is_usual = 1, .acts.is_work = 1},
       {"q", CLI_FLAG, &session->is_quiet},
       {"verbose", CLI_FLAG, &session->is_verbose, NULL, "say more on standard error", .acts.is_work = 1},
       {"v", CLI_FLAG, &session->is_verbose},

@@ -213,7 +213,7 @@ int cli_json_write(cli_session *session, void (*members)(cli_json *json, const v
 }
 
 int cli_json_leaves_text(const cli_session *session) {
-  return !session->is_quiet && !(session->json_path && strcmp(session->json_path, "-") == 0);
+  return !(session->json_path && strcmp(session->json_path, "-") == 0);
 }
 
 void cli_json_numbers(cli_json *json, const char *key, const double *values, int n) {

@@ -65,5 +65,6 @@ int cli_json_finish(cli_json *json);
 /* The same of members that a function writes. */
 int cli_json_write(struct cli_session *session, void (*members)(cli_json *json, const void *job), const void *job);
 
-/* Whether standard output is for people: the session is not quiet, and --json does not go there. */
+/* Whether standard output is for people, because --json does not go there. What a command was asked for is said there
+ * to who wants it quiet, too. */
 int cli_json_leaves_text(const struct cli_session *session);

@@ -110,7 +110,7 @@ int cli_error(int exit_code, const char *format, ...) {
 void cli_note(const cli_session *session, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
-  if (!session->is_quiet || session->host)
+  if (!session || !session->is_quiet || session->host)
     print_message(CONIC_LOG_INFO, format, arguments);
   va_end(arguments);
 }

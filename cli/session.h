@@ -75,7 +75,8 @@ int cli_usage(const char *format, ...) CONIC_AS_PRINTF(1, 2);
 /* Prints "conic: error: …" and returns `exit_code`. */
 int cli_error(int exit_code, const char *format, ...) CONIC_AS_PRINTF(2, 3);
 
-/* Prints "conic: …", unless the run is quiet: what was chosen for the user, who may want it otherwise. */
+/* Prints "conic: …", unless the run is quiet: what was chosen for the user, who may want it otherwise. What was asked
+ * for is said to all: of no session. */
 void cli_note(const cli_session *session, const char *format, ...) CONIC_AS_PRINTF(2, 3);
 /* Prints "conic: warning: …" unless the session is quiet. */
 void cli_warn(const cli_session *session, const char *format, ...) CONIC_AS_PRINTF(2, 3);

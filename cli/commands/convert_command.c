@@ -209,10 +209,10 @@ static void tell_losses(const void *cookie) {
   if (!job->is_checked || job->n_views == 0)
     return;
   if (job->greatest > 0.0)
-    cli_note(job->base.session, "%s: its pictures from %d %s have a PSNR of %.1f dB, and differ by up to %.3f",
-             job->base.output, job->n_views, sides, job->psnr, job->greatest);
+    cli_note(NULL, "%s: its pictures from %d %s have a PSNR of %.1f dB, and differ by up to %.3f", job->base.output,
+             job->n_views, sides, job->psnr, job->greatest);
   else
-    cli_note(job->base.session, "%s: its pictures from %d %s are the same", job->base.output, job->n_views, sides);
+    cli_note(NULL, "%s: its pictures from %d %s are the same", job->base.output, job->n_views, sides);
 }
 
 static uint64_t bytes_written(const char *path) {

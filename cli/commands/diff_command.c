@@ -145,7 +145,9 @@ static int run_diff(cli_session *session, int argc, char **argv) {
       {"max-flip", CLI_NUMBER, &limits->max_flip, "X", "let the mean FLIP be no higher [identical]", 0.0, 1.0,
        .is_given = &limits->has_max_flip},
       {"display", CLI_CHOICE, &job.display, "WHICH",
-       "whose colours are display values: none, a, b or both [auto: as an EXR says]", .choices = display_words},
+       "whose colours are display values: none, a, b or both [auto: as an EXR says, of itself and of a .pfm, .hdr or "
+       "NumPy file beside it]",
+       .choices = display_words},
       {"reduce", CLI_FLAG, &job.reduces, NULL, "bring the larger picture to the size of the other one"},
       {"match", CLI_CHOICE, &job.match, "HOW",
        "how pictures of two folders find each other: by name, number or order [auto]", .choices = match_words},

@@ -210,6 +210,7 @@ int cli_diff_folders(cli_diff_job *job) {
   for (size_t i = 0; i < views.n && exit_code == CLI_DONE; i++) {
     cli_session_part(job->session, "view", (int)i + 1, (int)views.n);
     exit_code = measure_view(job, &views.views[i]);
+    job->is_told = 1;
   }
   if (exit_code == CLI_DONE)
     exit_code = tell_views(job, &views);

@@ -26,6 +26,7 @@ typedef struct cli_diff_job {
   const char *paths[2]; /* images, folders or patterns */
   const char *heatmap_path, *csv_path;
   int is_flip_map, display, match, reduces, is_subset;
+  int is_told; /* of folders: a view was measured before, and what is to be said of such pictures was said */
   cli_diff_limits limits;
 } cli_diff_job;
 

@@ -3,6 +3,7 @@
 #include "cli/commands/diff_job.h"
 #include "core/files/file.h"
 #include "core/image/compare.h"
+#include "core/image/image_common.h"
 
 int cli_diff_has_values(const conic_difference *difference) {
   for (int i = 0; i < CONIC_N_PLANES; i++)
@@ -49,15 +50,70 @@ void cli_diff_report(cli_json *json, const conic_difference *difference) {
   cli_json_bool(json, "display_values", difference->is_display != 0);
 }
 
+/* Whether a file holds colours as they were computed, and has no place to say whether they are display values. */
+static int is_silent(const char *path) {
+  static const char *const endings[] = {"pfm", "hdr", "npy", "npz"};
+  int is_it = 0;
+  for (int k = 0; k < 4; k++)
+    is_it |= conic_file_has_ending(path, endings[k]);
+  return is_it;
+}
+
+/* A file that cannot say what its colours are, beside one that says display values, most likely has the same. */
+static void follow_partner(const cli_diff_job *job, const char *const paths[2], conic_image images[2]) {
+  int i = images[0].is_display != 0;
+  if (job->display != CLI_DISPLAY_AUTO || images[1 - i].is_display == images[i].is_display || !is_silent(paths[i]))
+    return;
+  images[i].is_display = 1;
+  if (!job->is_told)
+    cli_warn(job->session,
+             "%s: it does not say what its colours are: taken as display values, which %s has; --display %s "
+             "takes them as linear",
+             paths[i], paths[1 - i], i ? "a" : "b");
+}
+
+/* Says where the picture of a file that cannot say what its colours are would be far nearer with the other meaning. */
+static void warn_of_meaning(const cli_diff_job *job, const char *const paths[2], conic_image images[2],
+                            const conic_difference *found) {
+  conic_difference other;
+  for (int i = 0; i < 2; i++) {
+    if (job->display != CLI_DISPLAY_AUTO || found->is_display || !(found->psnr < 30.0) || !is_silent(paths[i]))
+      continue;
+    images[i].is_display = 1;
+    if (conic_image_compare(job->session->context, &images[0], &images[1], &other) == CONIC_OK &&
+        other.psnr > found->psnr + 10.0)
+      cli_warn(job->session,
+               "%s: as display values, its colours are far nearer, by %.2f dB: --display %s takes them so", paths[i],
+               other.psnr - found->psnr, i ? "b" : "a");
+    images[i].is_display = 0;
+  }
+}
+
+/* Says where one picture shows something in all that the other leaves transparent. */
+static void warn_of_background(const cli_diff_job *job, const char *const paths[2], const conic_image images[2]) {
+  for (int i = 0; i < 2; i++) {
+    const float *front = images[i].planes[CONIC_PLANE_RGBA], *back = images[1 - i].planes[CONIC_PLANE_RGBA];
+    const size_t n = 4 * conic_image_pixels(&images[i]);
+    size_t n_behind = 0, n_whole = 0;
+    for (size_t k = 0; k < n; k += 4) {
+      n_whole += back[k + 3] == 1.0f;
+      n_behind += front[k + 3] == 0.0f && (back[k] != 0.0f || back[k + 1] != 0.0f || back[k + 2] != 0.0f);
+    }
+    if (n_behind && 4 * n_whole == n)
+      cli_warn(job->session,
+               "%s has a background, of %zu pixels that %s leaves transparent: their colours are compared "
+               "with black",
+               paths[1 - i], n_behind, paths[i]);
+  }
+}
+
 /* Files of floats hold the values that were written; all others hold codes for a screen. */
 static void set_display(const cli_diff_job *job, int i, const char *path, conic_image *image) {
-  static const char *const float_endings[] = {"exr", "pfm", "hdr"};
   int is_asked = job->display == CLI_DISPLAY_BOTH || job->display == (i ? CLI_DISPLAY_B : CLI_DISPLAY_A);
   if (job->display == CLI_DISPLAY_NONE)
     image->is_display = 0;
-  for (int k = 0; is_asked && k < 3; k++)
-    if (conic_file_has_ending(path, float_endings[k]))
-      image->is_display = 1;
+  if (is_asked && (is_silent(path) || conic_file_has_ending(path, "exr")))
+    image->is_display = 1;
   if (is_asked)
     conic_image_encode(image);
 }
@@ -132,8 +188,14 @@ conic_status cli_diff_measure(const cli_diff_job *job, const char *const paths[2
   }
   if (status == CONIC_OK)
     status = fit_sizes(job, paths, needs_size, images);
-  if (status == CONIC_OK)
+  if (status == CONIC_OK) {
+    follow_partner(job, paths, images);
     status = conic_image_compare(context, &images[0], &images[1], difference);
+  }
+  if (status == CONIC_OK && difference->has_color && !job->is_told) {
+    warn_of_meaning(job, paths, images, difference);
+    warn_of_background(job, paths, images);
+  }
   if (status == CONIC_OK)
     status = write_heatmap(job, heatmap_path, images, difference);
   return status;

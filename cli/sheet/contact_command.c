@@ -288,7 +288,7 @@ static int run_contact(cli_session *session, int argc, char **argv) {
   if (status == CONIC_OK)
     status = write_contact(&job);
   exit_code = status == CONIC_OK ? cli_json_write(session, report_contact, &job) : cli_exit_of(status);
-  if (status == CONIC_OK && cli_json_leaves_text(session))
+  if (status == CONIC_OK && !session->is_quiet && cli_json_leaves_text(session))
     printf("%s: %zu files, of which %zu cannot be read\n", job.output, job.n, job.n_unreadable);
   conic_memory_release_these(session->context, job.row, job.names);
   return exit_code;

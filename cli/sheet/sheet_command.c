@@ -166,7 +166,7 @@ static int make_sheet(cli_session *session, void *cookie) {
   int exit_code = cli_exit_of(status);
   if (exit_code == CLI_DONE && cli_session_speaks(session)) {
     exit_code = cli_json_write(session, report_sheet, job);
-    if (cli_json_leaves_text(session))
+    if (!session->is_quiet && cli_json_leaves_text(session))
       printf("%s: %d x %d pixels, 1:%.6g at %g dpi\n", job->output, job->width, job->height, job->scale, job->dpi);
   }
   for (int i = 0; i < job->n_panels; i++)

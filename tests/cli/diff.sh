@@ -34,7 +34,7 @@ run_diff 1 a.pfm tall.pfm
 has '^different sizes: 2x1 and 1x2$'
 run_diff 0 nan.pfm nan.pfm
 run_diff 1 a.pfm b.pfm --quiet
-[[ ! -s out && ! -s err ]] || fail "--quiet prints"
+has '^differing pixels  1 of 2$'
 
 # With limits: the difference is 0.5, and the PSNR 10 log10(2 / (1 - 0.735358)²) = 14.556 dB
 run_diff 0 a.pfm b.pfm --max-abs 0.5
@@ -85,6 +85,28 @@ cmp -s h.pfm f.pfm && fail "both heat maps are the same"
 run_diff 1 a.pfm tall.pfm --heatmap none.pfm
 [[ ! -e none.pfm ]] || fail "a heat map of different sizes"
 grep -q '^conic: warning: none.pfm: ' err || fail "silent about the missing heat map"
+
+# A file of floats that cannot say what its colours are, beside one that says display values; and beside codes. A picture
+# with a background beside one without.
+run 0 make gaussians -n 60 -o g.ply
+has_exr=$("$conic" --version | grep -c '^In this build:.*OpenEXR')
+for out in g.pfm g.png $([[ $has_exr -eq 0 ]] || echo g.exr); do
+  run 0 render g.ply --size 40x40 --profile exact --background 0.2,0.3,0.4 -o "$out"
+done
+if [[ $has_exr -eq 1 ]]; then
+  run_diff 0 g.exr g.pfm --min-psnr 90
+  grep -q '^conic: warning: g.pfm: .*as display values, which g.exr has; --display a takes' err || fail "which is unsaid"
+  run_diff 1 g.exr g.pfm --min-psnr 90 --display a
+  [[ ! -s err ]] || fail "of a choice: $(cat err)"
+fi
+run_diff 1 g.png g.pfm --min-psnr 40
+grep -q '^conic: warning: g.pfm: .* far nearer, by [0-9.]* dB: --display b takes them so$' err || fail "no hint: $(cat err)"
+run_diff 0 g.png g.pfm --min-psnr 40 --display b
+[[ ! -s err ]] || fail "of a choice: $(cat err)"
+run 0 render g.ply --size 40x40 --profile exact --background none -o bare.png
+run_diff 1 bare.png g.png
+grep -q '^conic: warning: g.png has a background, of [0-9]* pixels that bare.png leaves transparent' err ||
+  fail "silent about a background: $(cat err)"
 
 # What fails
 run_diff 2 a.pfm
