@@ -32,20 +32,14 @@ int cli_parse_film(const char *text, void *value) {
   return pair[1] >= 0.0 || !strchr(text, ':');
 }
 
-/* Frames beside where the film would be: film.png for film.mp4. */
-static int leave_frames(const cli_session *session, cli_render_job *job, int i_output) {
-  cli_film *film = &job->film;
-  const char *path = film->path, *ending = conic_file_ending(path);
-  int length = snprintf(film->frames, sizeof film->frames, "%.*spng", (int)(ending - path), path);
-  if (length >= (int)sizeof film->frames)
-    return cli_usage("%s: the name is too long", path);
-  job->outputs[i_output] = film->frames;
-  cli_note(session,
-           "there is no ffmpeg: frames are written; it makes the film of them by: ffmpeg -framerate %g -start_number "
-           "%d -i '%.*s%%04d.png' '%s'",
-           job->fps, job->frames.is_given ? job->frames.first : job->is_turntable, (int)(ending - path), path, path);
-  film->path = NULL;
-  return CLI_DONE;
+/* A film that was asked for and cannot be is a failure, found before anything is drawn. */
+static int fail_without_ffmpeg(const cli_render_job *job, const char *path) {
+  int n_stem = (int)(conic_file_ending(path) - path);
+  return cli_error(
+      CLI_RESOURCE,
+      "%s: there is no ffmpeg to make it; draw frames by -o '%.*spng', of which it makes the film anywhere: "
+      "ffmpeg -framerate %g -start_number %d -i '%.*s%%04d.png' '%s'",
+      path, n_stem, path, job->fps, job->frames.is_given ? job->frames.first : job->is_turntable, n_stem, path, path);
 }
 
 int cli_film_check(const cli_session *session, cli_render_job *job) {
@@ -54,8 +48,10 @@ int cli_film_check(const cli_session *session, cli_render_job *job) {
   for (int i = 0; i < job->n_outputs; i++) {
     const char *path = job->outputs[i];
     int kind = film_kind(path);
-    if (kind < 0 || strchr(path, '%') || (!is_many && kind == 2)) /* a .gif of one picture is one */
+    if (kind < 0 || (kind == 2 && (!is_many || strchr(path, '%')))) /* a .gif of one picture is one */
       continue;
+    if (strchr(path, '%'))
+      return cli_usage("%s: a film is one file, and its name has no %% for the number of a frame", path);
     if (!is_many)
       return cli_usage("%s: a film has several pictures; give --path, --turntable or --view all, too", path);
     if (!(job->shot.planes & 1u << CONIC_PLANE_RGBA))
@@ -67,7 +63,7 @@ int cli_film_check(const cli_session *session, cli_render_job *job) {
     film->path = path;
     film->kind = kind;
     if (!session->host && !cli_shell_has_program("ffmpeg"))
-      return leave_frames(session, job, i);
+      return fail_without_ffmpeg(job, path);
     memmove(job->outputs + i, job->outputs + i + 1, (size_t)(--job->n_outputs - i) * sizeof *job->outputs);
     i--;
   }

@@ -3,9 +3,8 @@
 
 #include "cli/scene/render_job.h"
 
-/* Takes an output that is a film away from those that are pictures, and sees to it that one can be made. Without
- * ffmpeg, frames take its place, and what makes a film of them is said. Returns CLI_DONE, or CLI_USAGE after a message.
- */
+/* Takes an output that is a film away from those that are pictures, and sees to it that one can be made. Returns
+ * CLI_DONE, or, after a message, CLI_USAGE, or CLI_RESOURCE without ffmpeg. */
 int cli_film_check(const cli_session *session, cli_render_job *job);
 /* BITS, or BITS:QUALITY, into a cli_film. */
 int cli_parse_film(const char *text, void *value);

@@ -26,7 +26,6 @@ typedef struct cli_film {
   int width, height;
   FILE *pipe;                  /* once it has begun, to the program that makes it, */
   struct conic_output *output; /* in this file */
-  char frames[1024];           /* without that program: where frames go */
 } cli_film;
 
 /* Two eyes. */
