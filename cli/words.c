@@ -104,8 +104,10 @@ static const cli_word option_words[] = {
     {"tolerance", "max-abs"},
     {"psnr", "min-psnr"},
     {"ssim", "min-ssim"},
-    {"again ao accumulate aperture catcher deadline deep focus fps frames holdout memory motion occlusion path place "
-     "preview progressive repeat resumable resume save-shot shadow show shutter stereo tone transparency turntable",
+    {"ao shadow", NULL, NULL,
+     "it is an option of conic render and conic sheet: shadows are neither verified, judged nor explained"},
+    {"again accumulate aperture catcher deadline deep focus fps frames holdout memory motion occlusion path place "
+     "preview progressive repeat resumable resume save-shot show shutter stereo tone transparency turntable",
      NULL, NULL, "it is an option of conic render"},
 };
 

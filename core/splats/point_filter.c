@@ -89,7 +89,8 @@ static conic_status take_filter_name(filter_parser *p, int *name) {
   skip_filter_blanks(p);
   int is_quoted = *p->at == '"';
   if (!is_quoted && !is_filter_letter(*p->at))
-    return wrong_filter(p, *p->at ? "a name is expected here" : "it ends where a name is expected");
+    return wrong_filter(p, *p->at ? "a name is expected here, in double quotes if it has other signs than letters"
+                                  : "it ends where a name is expected");
   p->at += is_quoted;
   for (; is_quoted ? *p->at && *p->at != '"' : is_in_filter_name(*p->at); p->at++)
     if (n + 1 < sizeof word)
@@ -160,7 +161,10 @@ static conic_status take_filter_comparison(filter_parser *p) {
   int is_above = !is_least && !is_most && take_filter_token(p, ">");
   int is_below = !is_least && !is_most && !is_above && take_filter_token(p, "<");
   if (!is_least && !is_most && !is_above && !is_below)
-    return wrong_filter(p, "=, !=, <, <=, >, >= or in is expected here");
+    return wrong_filter(p, *p->at
+                               ? "=, !=, <, <=, >, >= or in is expected here; a name with blanks or signs in it stands "
+                                 "in double quotes, as '\"point density\" > 3'"
+                               : "=, !=, <, <=, >, >= or in is expected here");
   status = take_filter_number(p, is_least || is_above ? &step.low : &step.high);
   if (is_least || is_above)
     step.high = HUGE_VAL;

@@ -38,7 +38,7 @@ done << 'END'
 0|in full: conic render s.ply -o u.png|s.ply u.png -s 16x16
 0|in full: conic render s.ply --output=named.png|s.ply --output=named.png --size 16x16
 2|no output|render s.ply
-2|--shadow: it is an option of conic render|judge s.ply --shadow
+2|--shadow: it is an option of conic render and conic sheet: shadows are neither|judge s.ply --shadow
 2|--repeat: it is an option of conic render|verify s.ply --repeat 3
 2|--motion: it is an option of conic render|gradient s.ply --motion m.json
 2|no output|render s.ply taken.ply

@@ -41,7 +41,9 @@ static const struct {
              {"(a = 1", "a ) is expected here (at character 7)"},
              {"a in (1", "a list does not end"},
              {"\"a = 1", "a quoted name does not end"},
-             {"3 = a", "a name is expected here (at character 1)"}};
+             {"3 = a", "a name is expected here, in double quotes if it has other signs than letters (at character 1)"},
+             {"'a b' = 3", "a name is expected here, in double quotes if"},
+             {"a b = 3", "or in is expected here; a name with blanks or signs in it stands in double quotes, as '"}};
 
 static char last_message[400];
 
