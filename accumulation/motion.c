@@ -1,3 +1,4 @@
+#include "conic/motion.h"
 
 #include "accumulation/motion_file.h"
 #include "conic/accumulate.h"

@@ -1,6 +1,8 @@
 #include <fcntl.h>
 #include <io.h>
 #include <signal.h>
+#include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 /* after it */
 #include <windows.h>

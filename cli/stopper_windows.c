@@ -1,8 +1,10 @@
 #include <pthread.h>
 #include <stdatomic.h>
+#include <stdlib.h>
 #include <windows.h>
 
 #include "cli/stopper.h"
+#include "core/base/message.h"
 #include "core/files/file.h"
 
 enum { PATIENCE_MS = 300 };

@@ -1,4 +1,5 @@
 /* Whether a mistake explains all of a picture, and not only the samples by which it was found. */
+#include <math.h>
 
 #include "core/base/base.h"
 #include "judge/diagnosis_samples.h"

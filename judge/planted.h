@@ -2,6 +2,7 @@
 #pragma once
 
 #include "conic/gaussian_judge.h"
+#include "conic/triangles.h"
 #include "gaussians/draw/gaussian_rules.h"
 #include "raster/view/slips.h"
 

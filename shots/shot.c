@@ -3,6 +3,7 @@
 #include "shots/backdrop.h"
 #include "shots/bound_plane.h"
 #include "shots/motion_plane.h"
+#include "shots/stage.h"
 #include "shots/way.h"
 #include "source/source_kind.h"
 #include "source/surfaces_among.h"

@@ -1,5 +1,7 @@
 #include "shots/shot_faults.h"
 
+#include <string.h>
+
 #include "conic/shot_file.h"
 #include "core/image/view_arguments.h"
 #include "lighting/lamps.h"

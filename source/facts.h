@@ -2,6 +2,7 @@
 #pragma once
 
 #include "conic/source.h"
+#include "core/base/message.h"
 #include "core/pictures/georeference.h"
 
 #define CONIC_COUNT(name, value) ((conic_fact){.type = CONIC_FACT_COUNT, .key = (name), .count = (uint64_t)(value)})

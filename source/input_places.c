@@ -1,5 +1,9 @@
 #include "source/input_places.h"
 
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
 #include "core/base/base.h"
 #include "core/base/vectors.h"
 #include "core/formats/text_columns.h"

@@ -1,5 +1,7 @@
 #include "source/reach.h"
 
+#include <math.h>
+
 #include "core/base/base.h"
 #include "core/splats/splats_gather.h"
 

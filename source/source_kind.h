@@ -1,6 +1,7 @@
 /* A kind of source: one file that fills in this table, and one line in the list of source/source.c. */
 #pragma once
 
+#include "core/pictures/georeference.h"
 #include "core/splats/shares.h"
 #include "source/facts.h"
 #include "source/source_parts.h"

@@ -5,6 +5,7 @@
 #include "cli/outputs.h"
 #include "core/files/disk.h"
 #include "core/image/view_arguments.h"
+#include "core/splats/gaussian_profile.h"
 
 typedef struct project_job {
   cli_render_job scene;

@@ -2,6 +2,9 @@
 #pragma once
 
 #include "cli/session.h"
+#include "conic/gaussians.h"
+#include "conic/layers_draw.h"
+#include "core/base/base.h"
 #include "core/pictures/georeference.h"
 
 /* Whether it is read as another kind's hierarchy, which gives only places and colours. */

@@ -9,6 +9,7 @@
 #include "core/coloring/color_ramp.h"
 #include "core/coloring/legend.h"
 #include "core/files/disk.h"
+#include "core/files/file.h"
 #include "raster/frame/samples.h"
 #include "source/top/top_view.h"
 

@@ -1,3 +1,4 @@
+#include "cli/command.h"
 #include "cli/render/fill_shot.h"
 #include "cli/render/film.h"
 #include "cli/render/kept_frames.h"

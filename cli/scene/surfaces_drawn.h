@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cli/scene/render_job.h"
+#include "conic/gaussian_judge.h"
 
 typedef struct cli_surfaces_drawn {
   conic_image image;

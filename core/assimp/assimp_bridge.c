@@ -8,6 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "conic/export.h"
 #include "conic/version.h"
 #include "core/assimp/assimp_writer_bridge.h"
 

@@ -1,6 +1,7 @@
 /* Memory through the context's allocator: counted sizes, no overflow, aligned for vectors. */
 #pragma once
 
+#include <stddef.h>
 #include <stdint.h>
 
 #include "conic/context.h"

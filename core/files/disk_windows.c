@@ -1,6 +1,8 @@
 #include <dirent.h>
+#include <errno.h>
 #include <fcntl.h>
 #include <io.h>
+#include <string.h>
 #include <unistd.h>
 #include <wchar.h>
 #include <windows.h>

@@ -2,6 +2,10 @@
  * on, with zeros between. The header has the sum of the arrays' sums. */
 #pragma once
 
+#include <stddef.h>
+#include <stdio.h>
+
+#include "conic/context.h"
 #include "core/files/mapping.h"
 
 /* Structures in files: members in the order of a table, little-endian, one after the other. One table serves reading

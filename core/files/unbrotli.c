@@ -4,6 +4,8 @@
 
 #include <brotli/decode.h>
 
+#include "core/base/memory.h"
+
 static void *allocate_brotli(void *context, size_t n_bytes) {
   return conic_memory_allocate(context, n_bytes, 1);
 }

@@ -3,6 +3,7 @@
  * checked against its length. */
 #pragma once
 
+#include "core/base/base.h"
 #include "core/files/json_read.h"
 #include "core/files/mapping.h"
 

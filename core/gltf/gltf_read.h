@@ -1,6 +1,7 @@
 /* The reader of meshes in glTF. */
 #pragma once
 
+#include "core/files/input.h"
 #include "core/gltf/draco.h"
 #include "core/gltf/gltf.h"
 #include "core/meshes/mesh_parts.h"

@@ -1,5 +1,6 @@
 /* Elliptical filtering of a texture (docs/reference/picture.md, Textures): a Gaussian over a footprint, on two levels
  * of the pyramid, with a bounded number of texels. */
+#include <math.h>
 
 #include "core/image/texture_filter.h"
 #include "core/image/texture_levels.h"

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/meshes/point_slots.h"
+#include "core/splats/builder.h"
 #include "core/splats/faces.h"
 
 typedef struct conic_mesh_parts {

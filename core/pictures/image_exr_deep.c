@@ -1,5 +1,7 @@
 #include "core/pictures/image_exr_deep.h"
 
+#include "core/base/message.h"
+
 #if CONIC_HAVE_OPENEXR
 
 #include "core/files/file.h"

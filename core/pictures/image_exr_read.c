@@ -5,6 +5,8 @@
 
 #if CONIC_HAVE_OPENEXR
 
+#include <stdatomic.h>
+
 #include "core/image/image_common.h"
 #include "core/pictures/image_channels.h"
 #include "core/pictures/image_exr_stream.h"

@@ -3,6 +3,10 @@
 #include "core/pictures/image_exr_stream.h"
 #include "core/files/disk.h"
 
+#include <errno.h>
+#include <string.h>
+
+#include "core/base/message.h"
 #include "core/image/image_common.h"
 #include "core/pictures/picture_shot.h"
 

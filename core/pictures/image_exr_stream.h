@@ -6,6 +6,7 @@
 
 #include <openexr.h>
 #include <stdatomic.h>
+#include <stdint.h>
 #include <stdio.h>
 
 #include "conic/image.h"

@@ -1,5 +1,6 @@
 #include "core/pictures/image_exr.h"
 
+#include "core/base/message.h"
 #include "core/pictures/image_exr_bands.h"
 
 #if CONIC_HAVE_OPENEXR

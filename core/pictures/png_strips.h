@@ -1,6 +1,8 @@
 /* The pixels of a PNG, filtered and packed in strips of rows by all threads. */
 #pragma once
 
+#include <stdio.h>
+
 #include "core/pictures/image_png.h"
 
 /* Where a chunk's data begin, after its length and name. */

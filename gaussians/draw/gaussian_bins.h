@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gaussians/draw/gaussian_parts.h"
+#include "gaussians/draw/gaussian_tile.h"
 
 typedef struct conic_gaussian_bins {
   size_t first_x, first_y; /* tile of the picture */

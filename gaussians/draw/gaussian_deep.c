@@ -1,4 +1,5 @@
 /* Deep pictures of Gaussian scenes: a sample for each Gaussian that a pixel is composited of. */
+#include <stdlib.h>
 
 #include "core/base/base.h"
 #include "core/base/radix.h"

@@ -1,5 +1,6 @@
 /* A picture of Gaussians: set up, put in order, binned, composited. */
 
+#include <math.h>
 #include <stdatomic.h>
 
 #include "core/base/base.h"

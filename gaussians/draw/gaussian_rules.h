@@ -3,6 +3,7 @@
 
 #include "core/splats/gaussian_profile.h"
 #ifdef CONIC_ON_DEVICE
+#include "conic/image.h"
 #endif
 
 typedef struct conic_gaussian_rules {

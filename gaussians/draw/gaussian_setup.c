@@ -4,6 +4,7 @@
 
 #include "core/base/power.h"
 #include "core/base/vectors.h"
+#include "gaussians/draw/gaussian_outline.h"
 #include "gaussians/draw/screen_variance.h"
 #include "gaussians/draw/unscented_box.h"
 #include "gaussians/draw/view_rays.h"

@@ -6,6 +6,7 @@
 #include "core/base/gaussian.h"
 #include "core/base/power.h"
 #include "core/base/vectors.h"
+#include "gaussians/scene/harmonics.h"
 
 /* Of merged rows so many bits of 24 are kept, as they are no truth to the last one, and files become smaller. */
 static const uint32_t dropped_bits = 0x7ff;

@@ -1,6 +1,7 @@
 /* Gaussians that are merged into fewer, and by how much a picture changes where these are drawn in their place. */
 #pragma once
 
+#include "core/base/base.h"
 #include "gaussians/scene/gaussian_set.h"
 
 /* A Gaussian as a row of floats: mean, deviations, quaternion, opacity; its harmonics follow. */

@@ -1,5 +1,6 @@
 #include "lod/blends/levels_format.h"
 
+#include "core/base/byte_order.h"
 #include "core/files/file.h"
 #include "lod/ranges/ranges.h"
 

@@ -1,6 +1,7 @@
 /* A .lpc of Gaussians in levels, from a file or a URL: what a picture shows is read by ranges, and no more. */
 #pragma once
 
+#include "conic/camera.h"
 #include "conic/layers_draw.h"
 #include "lod/blends/levels_format.h"
 #include "lod/ranges/ranges.h"

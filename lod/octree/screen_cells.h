@@ -3,6 +3,7 @@
 #pragma once
 
 #include "conic/render.h"
+#include "conic/splats.h"
 
 typedef struct conic_screen_cells {
   conic_splats splats;

@@ -1,5 +1,6 @@
 #include "lod/ranges/curl_bridge.h"
 
+#include "conic/export.h"
 #include "conic/version.h"
 
 #define CURL_TEXT_OF(x) #x

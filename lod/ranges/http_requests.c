@@ -2,6 +2,12 @@
 
 #ifdef CONIC_HAVE_CURL
 
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/clock.h"
+#include "core/base/memory.h"
 #include "core/base/radix.h"
 
 enum {

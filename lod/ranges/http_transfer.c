@@ -3,6 +3,11 @@
 #ifdef CONIC_HAVE_CURL
 
 #include <limits.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "core/base/clock.h"
+#include "core/base/memory.h"
 
 enum { LEAST_BYTES_PER_SECOND = 8192, MOST_REDIRECTS = 5 };
 

@@ -2,6 +2,9 @@
 
 #ifndef CONIC_HAVE_CURL
 
+#include "core/base/message.h"
+#include "lod/ranges/ranges_backend.h"
+
 conic_status conic_ranges_open_url(conic_context *context, const char *url, const conic_ranges_options *options,
                                    conic_ranges **ranges) {
   (void)options;

@@ -1,7 +1,9 @@
 /* A picture of Gaussians by the oracle: every pixel by itself, over all of them. */
 
 #include "core/image/view_arguments.h"
+#include "oracle/gaussians/oracle_gaussian.h"
 #include "oracle/gaussians/oracle_lens.h"
+#include "oracle/oracle_math.h"
 
 /* --- emission and absorption along a pixel's ray: docs/reference/gaussians.md, Truth --- */
 

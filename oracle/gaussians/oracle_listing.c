@@ -2,6 +2,7 @@
 
 #include "core/image/view_arguments.h"
 #include "oracle/gaussians/oracle_cells.h"
+#include "oracle/gaussians/oracle_surface.h"
 
 conic_status conic_oracle_enter(conic_context *context, const conic_gaussians *gaussians, const conic_camera *camera,
                                 const conic_gaussian_options *options, const conic_float_model *model, int samples,

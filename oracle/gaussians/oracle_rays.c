@@ -1,5 +1,7 @@
 /* Which ray goes through a pixel, for any camera: conic/camera.h once more, by halves of brackets. */
+#include "oracle/gaussians/oracle_gaussian.h"
 #include "oracle/gaussians/oracle_lens.h"
+#include "oracle/oracle_math.h"
 
 #define ORACLE_PI 3.14159265358979323846
 

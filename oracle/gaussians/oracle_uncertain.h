@@ -1,6 +1,9 @@
 /* A Gaussian as floats may have it: what they are given at a pixel, and what may come of it there. */
 #pragma once
 
+#include "conic/gaussian_judge.h"
+#include "oracle/gaussians/oracle_bounded.h"
+#include "oracle/gaussians/oracle_gaussian.h"
 #include "oracle/gaussians/oracle_lens.h"
 #include "oracle/gaussians/oracle_surface.h"
 

@@ -1,4 +1,5 @@
 
+#include <math.h>
 
 #include "raster/project/clip_disc.h"
 

@@ -1,5 +1,7 @@
 #include "raster/project/clip_disc.h"
 
+#include <math.h>
+
 /* The outline is P(θ) = p + F_g (t_u cos θ + t_v sin θ). Along a direction e, scaled by the focal lengths, a point's
  * place on the screen is (e·P)/P_z; its derivative by θ vanishes, and P_z equals near, each where
  * a cos θ + b sin θ + c = 0: a pair of (cos θ, sin θ) without an angle. */

@@ -1,5 +1,7 @@
 #include "raster/project/clip_lines.h"
 
+#include <string.h>
+
 #include "core/base/vectors.h"
 #include "core/splats/clip.h"
 #include "raster/project/clip_disc.h"

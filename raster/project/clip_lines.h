@@ -4,6 +4,8 @@
  * s3 < 0 one with lines, +0 a ray without and -0 a ray with them. Its lines are clips[its index]. */
 #pragma once
 
+#include <math.h>
+
 #include "raster/project/projected.h"
 
 /* Two lines, dx and dy counted as for the footprint: line i keeps where (d0 + dy·by_y) + dx·by_x ≥ 0, with d0 the

@@ -3,6 +3,8 @@
  * drawn so; s2, which rays have no other use for, is 1 for them. */
 #pragma once
 
+#include <math.h>
+
 #include "raster/project/projected.h"
 
 /* A place counts as the disc's while u² is at most so many times F_g². */

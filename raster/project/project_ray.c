@@ -1,3 +1,4 @@
+#include <math.h>
 
 #include "core/base/vectors.h"
 #include "raster/project/clip_disc.h"

@@ -1,5 +1,8 @@
 #include "raster/project/projected.h"
 
+#include <math.h>
+#include <string.h>
+
 #include "core/base/vectors.h"
 #include "raster/view/method.h"
 #include "raster/view/slips.h"

@@ -1,6 +1,8 @@
 /* Projected splats: what one frame needs to know of each splat that it may draw. */
 #pragma once
 
+#include <stdint.h>
+
 #include "raster/view/view.h"
 
 /* The part that both passes read, one cache line.

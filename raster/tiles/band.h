@@ -3,6 +3,9 @@
  * fragments one after the other, with the sums in registers. */
 #pragma once
 
+#include <string.h>
+
+#include "conic/image.h"
 #include "raster/project/projected.h"
 
 /* The final weight of a visible splat is never below this, so that no sum is zero and no product denormal. */

@@ -1,3 +1,4 @@
+#include <math.h>
 
 #include "raster/tiles/light_terms.h"
 

@@ -4,6 +4,10 @@
  * Vertices are snapped to 1/256 pixel; from there on coverage is exact, in integers. */
 #pragma once
 
+#include <math.h>
+#include <stdint.h>
+
+#include "raster/project/projected.h"
 #include "raster/tiles/band.h"
 
 /* Stands before the type of whatever a frame or a set of triangles holds. A device has a memory of its own for it,

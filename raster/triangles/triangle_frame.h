@@ -6,6 +6,7 @@
 
 #include "conic/triangles.h"
 #include "core/base/kept_memory.h"
+#include "raster/tiles/band.h"
 #include "raster/triangles/triangle_samples.h"
 
 struct conic_triangle_loops;

@@ -2,6 +2,8 @@
  * triangle_body.h does the same in lanes. */
 #pragma once
 
+#include <math.h>
+
 #include "core/splats/float_vectors.h"
 #include "raster/triangles/triangle_look.h"
 

@@ -1,6 +1,10 @@
 /* What one frame asks for, brought into the form that the stages compute with. */
 #pragma once
 
+#include "conic/camera.h"
+#include "conic/context.h"
+#include "conic/render.h"
+#include "conic/splats.h"
 #include "core/splats/profile.h"
 
 /* c of the automatic ε = c·F_g·max(|t_u|, |t_v|). */

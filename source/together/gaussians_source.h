@@ -1,6 +1,7 @@
 /* A Gaussian scene as a source, alone or among the surfaces of other inputs. */
 #pragma once
 
+#include "conic/gaussian_render.h"
 #include "lod/blends/levels_read.h"
 #include "source/input_places.h"
 #include "source/source_kind.h"

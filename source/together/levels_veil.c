@@ -1,4 +1,5 @@
 /* What is left of the light in a small picture of few Gaussians, for choosing what a picture shows of levels. */
+#include "core/splats/gaussian_profile.h"
 #include "gaussians/draw/gaussian_walk.h"
 #include "source/together/gaussians_source.h"
 

@@ -1,8 +1,11 @@
 /* Several inputs of which some are Gaussian scenes: these are one scene, and all others surfaces among it
  * (docs/reference/together.md). */
+#include <string.h>
 
 #include "core/base/loan_find.h"
 #include "core/splats/near.h"
+#include "gaussians/scene/gaussian_set.h"
+#include "lod/blends/levels_read.h"
 #include "source/moved_drawing.h"
 #include "source/together/gaussians_source.h"
 
