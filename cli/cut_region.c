@@ -71,11 +71,8 @@ static conic_status end_polygon(polygon_reader *reader) {
     return CONIC_OK;
   if (region->n_corners - begin < 3)
     return conic_input_wrong(&reader->input, "a polygon has fewer than three corners");
-  conic_status status = conic_memory_reserve(reader->input.context, &region->ends, region->n_ends, region->n_ends + 1,
-                                             &reader->end_room, sizeof *region->ends);
-  if (status == CONIC_OK)
-    region->ends[region->n_ends++] = region->n_corners;
-  return status;
+  return conic_memory_append(reader->input.context, &region->ends, &region->n_ends, &reader->end_room,
+                             &region->n_corners, sizeof *region->ends);
 }
 
 static conic_status take_corner(polygon_reader *reader, const char *text, size_t length) {
@@ -89,11 +86,8 @@ static conic_status take_corner(polygon_reader *reader, const char *text, size_t
     return comment ? CONIC_OK : end_polygon(reader);
   if (n != 2)
     return conic_input_wrong(&reader->input, "a corner is no x and y");
-  conic_status status = conic_memory_reserve(reader->input.context, &region->corners, region->n_corners,
-                                             region->n_corners + 1, &reader->corner_room, sizeof *region->corners);
-  if (status == CONIC_OK)
-    memcpy(region->corners[region->n_corners++], place, sizeof place);
-  return status;
+  return conic_memory_append(reader->input.context, &region->corners, &region->n_corners, &reader->corner_room, place,
+                             sizeof place);
 }
 
 /* Nothing outside of all polygons is kept. */

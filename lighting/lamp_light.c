@@ -99,7 +99,7 @@ static conic_status find_lamp_depths(lamp_lighting *work) {
 }
 
 conic_status conic_light_add_lamps(conic_light_work *l) {
-  lamp_lighting work = {.l = l, .offset = conic_receiver_offset(l->options->samples)};
+  lamp_lighting work = {.l = l, .offset = conic_depth_offset(l->options->samples)};
   conic_status status = find_lamp_depths(&work);
   for (size_t i = 0; i < l->options->n_lamps && status == CONIC_OK; i++) {
     status = conic_progress(l->context, "light", (double)i / (double)l->options->n_lamps);

@@ -150,7 +150,7 @@ conic_status conic_receivers_of_image(conic_context *context, const conic_camera
                                       const conic_image *image, conic_receivers *receivers) {
   memset(receivers, 0, sizeof *receivers);
   receiver_rows work = {.camera = camera,
-                        .offset = conic_receiver_offset(samples),
+                        .offset = conic_depth_offset(samples),
                         .z = image->planes[CONIC_PLANE_Z],
                         .normal = image->planes[CONIC_PLANE_NORMAL],
                         .to = receivers};
@@ -203,10 +203,6 @@ conic_status conic_receivers_of_splats(conic_context *context, const conic_splat
 void conic_receivers_release(conic_context *context, conic_receivers *receivers) {
   conic_memory_release(context, receivers->block);
   memset(receivers, 0, sizeof *receivers);
-}
-
-double conic_receiver_offset(int samples) {
-  return samples % 2 ? 0.0 : -0.5 / samples;
 }
 
 int conic_pixel_place(const conic_camera_rays *rays, double x_px, double y_px, double z, double world[3]) {

@@ -26,9 +26,6 @@ conic_status conic_receivers_of_splats(conic_context *context, const conic_splat
 
 void conic_receivers_release(conic_context *context, conic_receivers *receivers);
 
-/* How far the sample whose depth Z is lies from the pixel's centre, to the right and down. */
-double conic_receiver_offset(int samples);
-
 /* The world position of what a place of the picture, in pixels, shows at depth z; returns 0 where there is none. */
 int conic_pixel_place(const conic_camera_rays *rays, double x_px, double y_px, double z, double world[3]);
 

@@ -46,12 +46,8 @@ static conic_status make_program(conic_opencl *opencl, const conic_opencl_text *
 static conic_status keep_folder(conic_opencl *opencl, const char *folder) {
   if (!folder)
     return CONIC_OK;
-  size_t n = strlen(folder) + 1;
-  opencl->cache_folder = conic_memory_allocate(opencl->context, n, 1);
-  if (!opencl->cache_folder)
-    return CONIC_ERROR_MEMORY;
-  memcpy(opencl->cache_folder, folder, n);
-  return CONIC_OK;
+  opencl->cache_folder = conic_memory_copy_text(opencl->context, folder);
+  return opencl->cache_folder ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
 
 static conic_status open_device(conic_opencl *opencl, const conic_opencl_options *options) {

@@ -2,7 +2,7 @@
 
 #include <stdatomic.h>
 
-#include "core/base/radix.h"
+#include "core/base/real.h"
 #include "oracle/oracle_weights.h"
 
 /* A block's edge in samples, and the splats that are set up at a time unless one pixel has more: what a thread needs

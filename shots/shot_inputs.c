@@ -85,13 +85,11 @@ typedef struct folder_list {
 enum { MOST_DEPTH = 16 };
 
 static conic_status add_to_folder_list(folder_list *list, const char *path, const conic_disk_entry *entry) {
-  size_t n = strlen(path) + 1;
   conic_status status =
       conic_memory_reserve(list->context, &list->files, list->n, list->n + 1, &list->room, sizeof *list->files);
-  char *copy = status == CONIC_OK ? conic_memory_allocate(list->context, n, 1) : NULL;
+  char *copy = status == CONIC_OK ? conic_memory_copy_text(list->context, path) : NULL;
   if (!copy)
     return CONIC_ERROR_MEMORY;
-  memcpy(copy, path, n);
   list->files[list->n++] = (folder_file){copy, entry->n_bytes, entry->modified_seconds};
   list->n_bytes += entry->n_bytes;
   return CONIC_OK;
@@ -224,13 +222,11 @@ static size_t end_looking(conic_context *context, conic_shot_inputs *inputs, int
 
 static conic_status add_input(conic_context *context, conic_shot_inputs *inputs, const char *name,
                               conic_shot_role role) {
-  size_t n = strlen(name) + 1;
   conic_status status =
       conic_memory_reserve(context, &inputs->inputs, inputs->n, inputs->n + 1, &inputs->room, sizeof *inputs->inputs);
-  char *copy = status == CONIC_OK ? conic_memory_allocate(context, n, 1) : NULL;
+  char *copy = status == CONIC_OK ? conic_memory_copy_text(context, name) : NULL;
   if (!copy)
     return CONIC_ERROR_MEMORY;
-  memcpy(copy, name, n);
   inputs->inputs[inputs->n++] = (conic_shot_input){.name = copy, .role = role};
   return CONIC_OK;
 }

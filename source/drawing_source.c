@@ -397,11 +397,9 @@ static conic_status open_drawing(conic_source *source, const char *const *paths,
     return CONIC_ERROR_MEMORY;
   d->n_inputs = n_paths;
   if (options->cache) {
-    const size_t n = strlen(options->cache) + 1;
-    d->lean.cache = conic_memory_allocate(source->context, n, 1);
+    d->lean.cache = conic_memory_copy_text(source->context, options->cache);
     if (!d->lean.cache)
       return CONIC_ERROR_MEMORY;
-    memcpy(d->lean.cache, options->cache, n);
   }
   if (n_paths == 1 && !options->place)
     status = borrow_splats(d, paths[0], options);

@@ -41,14 +41,11 @@ static conic_status find_range(conic_context *context, const char *path, const c
   conic_read_options_init(&options);
   options.field = name;
   options.field_is_optional = 1;
-  conic_status status = conic_input_open(context, path, &input);
+  conic_status status = conic_model_open(context, path, &input, &kind);
   if (status != CONIC_OK)
     return status;
-  status = conic_model_find_kind(&input, path, &kind);
-  if (status == CONIC_OK) {
-    status = conic_model_read_kind(&input, kind, &options, &delivery, &model);
-    conic_model_release(context, &model);
-  }
+  status = conic_model_read_kind(&input, kind, &options, &delivery, &model);
+  conic_model_release(context, &model);
   conic_input_close(&input);
   return status;
 }

@@ -142,10 +142,7 @@ static void fill_record(const conic_splats *batch, size_t i, uint64_t index, uns
   }
 }
 
-static int compare_keys(const void *a, const void *b) {
-  uint64_t first = *(const uint64_t *)a, second = *(const uint64_t *)b;
-  return (first > second) - (first < second);
-}
+CONIC_DEFINE_ORDER_OF(compare_keys, uint64_t)
 
 /* Places points first … first + n - 1 of a batch; those that are not finite go straight to the results. */
 static conic_status place_points(cleaning *work, const conic_splats *batch, size_t first, size_t n) {

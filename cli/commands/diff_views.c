@@ -3,6 +3,7 @@
 #include "cli/shell.h"
 #include "core/files/file.h"
 #include "core/files/guard.h"
+#include "core/files/number.h"
 
 int cli_diff_is_many(const char *path) {
   conic_disk_entry found;
@@ -36,15 +37,11 @@ static long frame_number(const char *stem, int n) {
   return strtol(stem + n - n_digits, NULL, 10);
 }
 
-static int is_decimal(char c) {
-  return c >= '0' && c <= '9';
-}
-
 /* Orders names by letters, and numbers in them by value: frame9 comes before frame10. */
 static int compare_by_nature(const void *first, const void *second) {
   const char *a = ((const cli_diff_file *)first)->name, *b = ((const cli_diff_file *)second)->name;
   while (*a && *b) {
-    if (is_decimal(*a) && is_decimal(*b)) {
+    if (conic_is_digit(*a) && conic_is_digit(*b)) {
       size_t n_a, n_b;
       a += strspn(a, "0");
       b += strspn(b, "0");

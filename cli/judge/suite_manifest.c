@@ -147,12 +147,12 @@ static void read_file_entry(conic_json *json, manifest_file *file) {
 
 /* Makes room for one more entry, which is zero; null after a failure. */
 static void *add_entry(manifest_reader *r, void *array, size_t *n, size_t *room, size_t size) {
-  void **entries = array;
+  void *added = NULL;
   if (*n == SUITE_MOST_ENTRIES)
     conic_json_wrong(&r->json, "there are more than 4096 scenes, cases or files");
-  if (r->json.status == CONIC_OK)
-    r->json.status = conic_memory_reserve(r->json.context, array, *n, *n + 1, room, size);
-  return r->json.status == CONIC_OK ? memset((char *)*entries + (*n)++ * size, 0, size) : NULL;
+  if (r->json.status == CONIC_OK && !(added = conic_memory_add(r->json.context, array, n, room, size)))
+    r->json.status = CONIC_ERROR_MEMORY;
+  return added;
 }
 
 static void read_entries(manifest_reader *r, const char *key) {

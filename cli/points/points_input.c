@@ -15,11 +15,10 @@ int cli_points_may_be_text(conic_context *context, const char *path) {
   conic_input input;
   if (cli_points_are_hierarchy(path) || conic_layers_is_file(path))
     return 0;
-  if (!conic_file_is_there(path) || conic_input_open(context, path, &input) != CONIC_OK)
+  if (!conic_file_is_there(path) || conic_model_open(context, path, &input, &kind) != CONIC_OK)
     return 1;
-  conic_status status = conic_model_find_kind(&input, path, &kind);
   conic_input_close(&input);
-  return status != CONIC_OK || kind == CONIC_MODEL_XYZ;
+  return kind == CONIC_MODEL_XYZ;
 }
 
 int cli_points_are_surveys(const char *const *paths, int n_paths) {

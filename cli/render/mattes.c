@@ -2,7 +2,7 @@
 
 #include "cli/scene/surfaces_drawn.h"
 #include "core/base/machine.h"
-#include "core/base/radix.h"
+#include "core/base/real.h"
 #include "core/files/file.h"
 #include "gaussians/formats/gaussian_formats.h"
 #include "raster/frame/samples.h"
@@ -166,11 +166,8 @@ static conic_status add_labels(matte_pass *pass, size_t i_input, const float *va
   for (size_t i = 0; i < n && status == CONIC_OK; i++) {
     if (i > 0 && all[i].value == all[i - 1].value)
       continue;
-    if (pass->n_labels == pass->labels_room)
-      status = conic_memory_reserve(pass->context, &pass->labels, pass->n_labels, pass->n_labels + 1,
-                                    &pass->labels_room, sizeof *all);
-    if (status == CONIC_OK)
-      pass->labels[pass->n_labels++] = all[i];
+    status =
+        conic_memory_append(pass->context, &pass->labels, &pass->n_labels, &pass->labels_room, &all[i], sizeof *all);
   }
   conic_memory_release(pass->context, all);
   for (size_t i = 0; i < n && status == CONIC_OK; i++) {

@@ -12,7 +12,7 @@
 #include "cli/render/strip_pictures.h"
 #include "cli/render/units.h"
 #include "cli/scene/stereo.h"
-#include "core/base/radix.h"
+#include "core/base/real.h"
 #include "source/lean_drawing.h"
 
 CONIC_DEFINE_ORDER(compare_frames, conic_render_statistics, ms.frame)

@@ -7,10 +7,8 @@
 enum { CAPITAL = 12, GAP = 3, BLANK = 5, DIGIT = 8, PIECES = 6 };
 
 static void add_stroke(cli_strokes *s, cli_stroke stroke) {
-  if (s->n == s->room && s->status == CONIC_OK)
-    s->status = conic_memory_reserve(s->context, &s->list, s->n, s->n + 1, &s->room, sizeof *s->list);
   if (s->status == CONIC_OK)
-    s->list[s->n++] = stroke;
+    s->status = conic_memory_append(s->context, &s->list, &s->n, &s->room, &stroke, sizeof stroke);
 }
 
 void cli_strokes_line(cli_strokes *s, double x0, double y0, double x1, double y1, double width, float grey) {

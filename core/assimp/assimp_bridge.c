@@ -11,6 +11,7 @@
 #include "conic/export.h"
 #include "conic/version.h"
 #include "core/assimp/assimp_writer_bridge.h"
+#include "core/base/vectors.h"
 
 enum { BLOCK = 1024, MOST_NOTES = 4 };
 
@@ -34,23 +35,6 @@ static placement place_below(const placement *parent, const struct aiMatrix4x4 *
       product.rows[row][column] = sum;
     }
   return product;
-}
-
-/* Normals are turned by the cofactors. A mirrored mesh has its corners turned round, so its normals change sign,
- * too. */
-static void find_normal_rows(placement *place) {
-  double determinant = 0.0;
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) {
-      const double *a = place->rows[(i + 1) % 3], *b = place->rows[(i + 2) % 3];
-      place->normal_rows[i][j] = a[(j + 1) % 3] * b[(j + 2) % 3] - a[(j + 2) % 3] * b[(j + 1) % 3];
-    }
-  for (int j = 0; j < 3; j++)
-    determinant += place->rows[0][j] * place->normal_rows[0][j];
-  place->is_mirrored = determinant < 0.0;
-  for (int i = 0; i < 3 && place->is_mirrored; i++)
-    for (int j = 0; j < 3; j++)
-      place->normal_rows[i][j] = -place->normal_rows[i][j];
 }
 
 /* What is sent of the vertices of a mesh. */
@@ -157,7 +141,7 @@ static void send_mesh(conic_assimp_writer *w, const struct aiMesh *mesh, const p
 
 static void send_node(conic_assimp_writer *w, const struct aiNode *node, const placement *parent) {
   placement place = place_below(parent, &node->mTransformation);
-  find_normal_rows(&place);
+  place.is_mirrored = conic_normal_rows((const double(*)[4])place.rows, place.normal_rows);
   for (unsigned i = 0; i < node->mNumMeshes && !w->is_failed; i++)
     if (node->mMeshes[i] < w->scene->mNumMeshes)
       send_mesh(w, w->scene->mMeshes[node->mMeshes[i]], &place);

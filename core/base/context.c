@@ -113,6 +113,17 @@ void *conic_memory_allocate_zeroed(conic_context *context, size_t count, size_t 
   return take_block(context, count, size, 1);
 }
 
+void *conic_memory_copy(conic_context *context, const void *from, size_t n_bytes) {
+  void *copy = conic_memory_allocate(context, n_bytes, 1);
+  if (copy && n_bytes > 0)
+    memcpy(copy, from, n_bytes);
+  return copy;
+}
+
+char *conic_memory_copy_text(conic_context *context, const char *text) {
+  return conic_memory_copy(context, text, strlen(text) + 1);
+}
+
 conic_status conic_memory_grow(conic_context *context, void *array, size_t used, size_t count, size_t size) {
   void *smaller, *larger = conic_memory_allocate(context, count, size);
   if (!larger)
@@ -136,14 +147,20 @@ conic_status conic_memory_reserve(conic_context *context, void *array, size_t us
   return status;
 }
 
+void *conic_memory_add(conic_context *context, void *array, size_t *n, size_t *room, size_t size) {
+  unsigned char *elements;
+  if (conic_memory_reserve(context, array, *n, *n + 1, room, size) != CONIC_OK)
+    return NULL;
+  memcpy(&elements, array, sizeof elements);
+  return memset(elements + (*n)++ * size, 0, size);
+}
+
 conic_status conic_memory_append(conic_context *context, void *array, size_t *n, size_t *room, const void *element,
                                  size_t size) {
-  unsigned char *elements;
-  conic_status status = conic_memory_reserve(context, array, *n, *n + 1, room, size);
-  memcpy(&elements, array, sizeof elements);
-  if (status == CONIC_OK)
-    memcpy(elements + (*n)++ * size, element, size);
-  return status;
+  void *added = conic_memory_add(context, array, n, room, size);
+  if (added)
+    memcpy(added, element, size);
+  return added ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
 
 void conic_memory_release(conic_context *context, void *pointer) {

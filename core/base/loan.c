@@ -27,10 +27,9 @@ conic_status conic_lend(conic_context *context, const char *name, const void *wh
     is_known |= conic_loan_is_named(name, loan_kinds[i]);
   if (!is_known || !what)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: nothing can be lent under that name", name ? name : "null");
-  const conic_loan loan = {conic_memory_allocate(context, strlen(name) + 1, 1), what};
+  const conic_loan loan = {conic_memory_copy_text(context, name), what};
   if (!loan.name)
     return CONIC_ERROR_MEMORY;
-  memcpy(loan.name, name, strlen(name) + 1);
   conic_status status =
       conic_memory_append(context, &context->loans, &context->n_loans, &context->loans_room, &loan, sizeof loan);
   if (status != CONIC_OK)

@@ -16,6 +16,10 @@ void *conic_memory_allocate(conic_context *context, size_t count, size_t size);
 /* conic_memory_allocate with all bytes zero. */
 void *conic_memory_allocate_zeroed(conic_context *context, size_t count, size_t size);
 
+/* A copy of that many bytes, or of text; null where there is no room. */
+void *conic_memory_copy(conic_context *context, const void *from, size_t n_bytes);
+char *conic_memory_copy_text(conic_context *context, const char *text);
+
 /* Room for an array, by the address of its pointer. */
 typedef struct conic_memory_room {
   void *array;
@@ -45,7 +49,8 @@ conic_status conic_memory_reserve(conic_context *context, void *array, size_t us
                                   size_t size);
 
 /* Appends an element of `size` bytes to such an array of *n elements. On failure the array, *n and *room stay as they
- * were. */
+ * were. The first function's element is zero; it is returned, or null. */
+void *conic_memory_add(conic_context *context, void *array, size_t *n, size_t *room, size_t size);
 conic_status conic_memory_append(conic_context *context, void *array, size_t *n, size_t *room, const void *element,
                                  size_t size);
 

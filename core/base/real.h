@@ -1,4 +1,5 @@
-/* Floating-point numbers as they are stored: whether they are finite, their bits, and their order for qsort. */
+/* Floating-point numbers as they are stored: whether they are finite, their bits, and comparisons for qsort; and
+ * searches in what is in order. */
 #pragma once
 
 #include <stdint.h>
@@ -44,6 +45,11 @@ static inline int conic_compare_doubles(const void *a, const void *b) {
   return (*first > *second) - (*first < *second);
 }
 
+/* The nearest number from 0 to 1; 0 for NaN. */
+static inline double conic_unit(double v) {
+  return v > 0.0 ? v < 1.0 ? v : 1.0 : 0.0;
+}
+
 static inline int conic_least(int a, int b) {
   return a < b ? a : b;
 }
@@ -51,3 +57,42 @@ static inline int conic_least(int a, int b) {
 static inline int conic_greatest(int a, int b) {
   return a > b ? a : b;
 }
+
+/* Below, at or above zero, as a is below, at or above b. */
+#define CONIC_ORDER(a, b) (((a) > (b)) - ((a) < (b)))
+
+/* Defines a static comparison of structs by a member; and by one that decides where the first is the same. */
+/* NOLINTBEGIN(bugprone-macro-parentheses): types and members, which stand bare */
+#define CONIC_DEFINE_ORDER(function, type, member)                                                                     \
+  static int function(const void *a, const void *b) {                                                                  \
+    const type *first = a, *second = b;                                                                                \
+    return CONIC_ORDER(first->member, second->member);                                                                 \
+  }
+#define CONIC_DEFINE_ORDER_BY_TWO(function, type, member, other)                                                       \
+  static int function(const void *a, const void *b) {                                                                  \
+    const type *first = a, *second = b;                                                                                \
+    int order = CONIC_ORDER(first->member, second->member);                                                            \
+    return order ? order : CONIC_ORDER(first->other, second->other);                                                   \
+  }
+/* And of numbers. */
+#define CONIC_DEFINE_ORDER_OF(function, type)                                                                          \
+  static inline int function(const void *a, const void *b) {                                                           \
+    return CONIC_ORDER(*(const type *)a, *(const type *)b);                                                            \
+  }
+/* NOLINTEND(bugprone-macro-parentheses) */
+
+/* Raises `low`, a size_t, to the number of the first of n items for which `comes_before`, an expression of the number
+ * `middle`, is false. It is true of all items before that, and false of all behind. */
+/* NOLINTBEGIN(bugprone-macro-parentheses): a variable, which is set */
+#define CONIC_BISECT(low, n, comes_before)                                                                             \
+  do {                                                                                                                 \
+    size_t behind = (n);                                                                                               \
+    while (low < behind) {                                                                                             \
+      const size_t middle = low + (behind - low) / 2;                                                                  \
+      if (comes_before)                                                                                                \
+        low = middle + 1;                                                                                              \
+      else                                                                                                             \
+        behind = middle;                                                                                               \
+    }                                                                                                                  \
+  } while (0)
+/* NOLINTEND(bugprone-macro-parentheses) */

@@ -80,6 +80,23 @@ static inline int conic_normalize(double v[3]) {
   return is_good;
 }
 
+/* The rows that turn normals where a matrix's turn places: its cofactors. A mirrored mesh has its corners turned round,
+ * so its normals change sign, too. Returns whether it is one. */
+static inline int conic_normal_rows(const double place[3][4], double rows[3][3]) {
+  double determinant = 0.0;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      const double *a = place[(i + 1) % 3], *b = place[(i + 2) % 3];
+      rows[i][j] = a[(j + 1) % 3] * b[(j + 2) % 3] - a[(j + 2) % 3] * b[(j + 1) % 3];
+    }
+  for (int j = 0; j < 3; j++)
+    determinant += place[0][j] * rows[0][j];
+  for (int i = 0; i < 3 && determinant < 0.0; i++)
+    for (int j = 0; j < 3; j++)
+      rows[i][j] = -rows[i][j];
+  return determinant < 0.0;
+}
+
 /* The rotation of a unit quaternion w, x, y, z. */
 static inline void conic_rotation_of(const double quaternion[4], double rows[3][3]) {
   double w = quaternion[0], x = quaternion[1], y = quaternion[2], z = quaternion[3];

@@ -12,11 +12,7 @@ static const double most_seconds = 1e6, largest_place = 1e29;
 /* --- reading --- */
 
 static conic_status add_key(conic_context *context, conic_camera_path *path, const conic_camera_key *key) {
-  conic_status status =
-      conic_memory_reserve(context, &path->keys, path->n, path->n + 1, &path->room, sizeof *path->keys);
-  if (status == CONIC_OK)
-    path->keys[path->n++] = *key;
-  return status;
+  return conic_memory_append(context, &path->keys, &path->n, &path->room, key, sizeof *key);
 }
 
 static conic_status read_place(conic_json *json, double place[3]) {

@@ -2,7 +2,6 @@
 
 #include "core/base/base.h"
 #include "core/base/byte_order.h"
-#include "core/base/radix.h"
 #include "core/base/trigonometry.h"
 #include "core/cameras/camera_list.h"
 #include "core/files/number.h"

@@ -109,12 +109,10 @@ static void read_frame_name(transforms_reader *reader, transforms_frame *frame) 
 static conic_status read_frame(transforms_reader *reader) {
   char key[CONIC_JSON_KEY_ROOM];
   int has_matrix = 0;
-  conic_status status = conic_memory_reserve(reader->list->context, &reader->frames, reader->n_frames,
-                                             reader->n_frames + 1, &reader->frame_room, sizeof *reader->frames);
-  if (status != CONIC_OK)
-    return status;
-  transforms_frame *frame = &reader->frames[reader->n_frames++];
-  memset(frame, 0, sizeof *frame);
+  transforms_frame *frame =
+      conic_memory_add(reader->list->context, &reader->frames, &reader->n_frames, &reader->frame_room, sizeof *frame);
+  if (!frame)
+    return CONIC_ERROR_MEMORY;
   frame->line = reader->json.line;
   conic_json_begin_object(&reader->json);
   while (conic_json_next_member(&reader->json, key))

@@ -16,14 +16,6 @@ struct conic_output {
   conic_output *next;   /* next of the context's outputs */
 };
 
-static char *copy_text(conic_context *context, const char *text) {
-  size_t n = strlen(text) + 1;
-  char *copy = conic_memory_allocate(context, n, 1);
-  if (copy)
-    memcpy(copy, text, n);
-  return copy;
-}
-
 static void release_output(conic_output *output) {
   conic_context *context = output->context;
   conic_memory_release_these(context, output->path, output->target, output->temporary_path, output);
@@ -211,7 +203,7 @@ static conic_status open_target(conic_output *output) {
   if (!conic_file_follow(output->path, target, sizeof target))
     return conic_fail(output->context, CONIC_ERROR_IO, "%s: cannot write: the name is too long, or links to itself",
                       output->path);
-  output->target = copy_text(output->context, target);
+  output->target = conic_memory_copy_text(output->context, target);
   if (!output->target)
     return CONIC_ERROR_MEMORY;
   return is_there ? open_existing(output, &existing) : open_temporary(output);
@@ -223,9 +215,9 @@ static conic_status open_output(conic_context *context, const char *path, const 
   if (!made)
     return CONIC_ERROR_MEMORY;
   made->context = context;
-  made->path = copy_text(context, path);
+  made->path = conic_memory_copy_text(context, path);
   made->is_kept = part != NULL;
-  made->temporary_path = part ? copy_text(context, part) : NULL;
+  made->temporary_path = part ? conic_memory_copy_text(context, part) : NULL;
   conic_status status = made->path && (!part || made->temporary_path) ? open_target(made) : CONIC_ERROR_MEMORY;
   if (status != CONIC_OK) {
     release_output(made);

@@ -30,13 +30,11 @@ static conic_noted_file *find_noted(const conic_context *context, const conic_di
 }
 
 static conic_status add_noted(conic_context *context, const char *path, const conic_file_identity *file) {
-  size_t n = strlen(path) + 1;
   conic_status status = conic_memory_reserve(context, &context->inputs, context->n_inputs, context->n_inputs + 1,
                                              &context->inputs_room, sizeof *context->inputs);
-  char *copy = status == CONIC_OK ? conic_memory_allocate(context, n, 1) : NULL;
+  char *copy = status == CONIC_OK ? conic_memory_copy_text(context, path) : NULL;
   if (!copy)
     return CONIC_ERROR_MEMORY;
-  memcpy(copy, path, n);
   context->inputs[context->n_inputs++] = (conic_noted_file){*file, copy, context->inputs_phase};
   return CONIC_OK;
 }

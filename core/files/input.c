@@ -168,19 +168,17 @@ conic_status conic_text_byte_order_mark(conic_context *context, const char *name
   return CONIC_OK;
 }
 
-conic_status conic_input_take_rest(conic_input *input, uint64_t most, unsigned char **bytes, size_t *n_bytes) {
+conic_status conic_input_take(conic_input *input, uint64_t most, unsigned char **bytes, size_t *n_bytes) {
   uint64_t remaining = conic_input_remaining_bytes(input);
   size_t room = 0;
   conic_status status = CONIC_OK;
   *n_bytes = 0;
-  if (remaining != UINT64_MAX && remaining <= most)
-    status = conic_memory_reserve(input->context, bytes, 0, (size_t)remaining, &room, 1);
+  if (remaining != UINT64_MAX)
+    status = conic_memory_reserve(input->context, bytes, 0, (size_t)(remaining < most ? remaining : most), &room, 1);
   for (size_t n = 1; status == CONIC_OK && n > 0;) {
     status = conic_input_fill(input, 1);
     n = conic_input_available(input);
-    if (status == CONIC_OK && *n_bytes + n > most)
-      return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: files of this kind are read up to %llu MiB",
-                        input->name, (unsigned long long)(most >> 20) + 1);
+    n = n < most - *n_bytes ? n : (size_t)(most - *n_bytes);
     if (status == CONIC_OK)
       status = conic_memory_reserve(input->context, bytes, *n_bytes, *n_bytes + n, &room, 1);
     if (status == CONIC_OK && n > 0)
@@ -189,6 +187,14 @@ conic_status conic_input_take_rest(conic_input *input, uint64_t most, unsigned c
     *n_bytes += status == CONIC_OK ? n : 0;
   }
   return status;
+}
+
+conic_status conic_input_take_rest(conic_input *input, uint64_t most, unsigned char **bytes, size_t *n_bytes) {
+  conic_status status = conic_input_take(input, most, bytes, n_bytes);
+  return status == CONIC_OK && conic_input_available(input) > 0
+             ? conic_fail(input->context, CONIC_ERROR_INPUT, "%s: files of this kind are read up to %llu MiB",
+                          input->name, (unsigned long long)(most >> 20) + 1)
+             : status;
 }
 
 conic_status conic_input_skip_mark(conic_input *input) {

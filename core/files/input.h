@@ -40,8 +40,11 @@ static inline const unsigned char *conic_input_bytes(const conic_input *input) {
   return input->window + input->next;
 }
 
-/* Takes the rest of the file into memory, at most `most` bytes. The caller releases *bytes, on failure too; it begins
- * null. Errors: as fill, and INPUT (there are more), MEMORY. */
+/* Takes so many bytes into memory, or fewer at the end of the file: where its size is not known, the memory grows with
+ * the bytes that come. The caller releases *bytes, on failure too; it begins null. Errors: as fill, and MEMORY. */
+conic_status conic_input_take(conic_input *input, uint64_t most, unsigned char **bytes, size_t *n_bytes);
+
+/* The same of the rest of the file. Errors: also INPUT (there are more). */
 conic_status conic_input_take_rest(conic_input *input, uint64_t most, unsigned char **bytes, size_t *n_bytes);
 
 /* Copies n bytes from an offset of a file that has_size, without moving the next byte; fewer at the end of the file.

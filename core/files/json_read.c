@@ -43,11 +43,9 @@ conic_status conic_json_open(conic_context *context, const char *path, conic_jso
 conic_status conic_json_take(conic_context *context, const char *name, const void *bytes, size_t n_bytes,
                              conic_json *json) {
   begin_json(context, name, json);
-  json->text = conic_memory_allocate(context, n_bytes, 1);
+  json->text = conic_memory_copy(context, bytes, n_bytes);
   if (!json->text)
     return CONIC_ERROR_MEMORY;
-  if (n_bytes > 0)
-    memcpy(json->text, bytes, n_bytes);
   conic_status status = begin_reading(json, n_bytes);
   if (status != CONIC_OK)
     conic_json_close(json);

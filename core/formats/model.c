@@ -104,11 +104,18 @@ static conic_status find_kind(const conic_input *input, const char *path, conic_
   return CONIC_OK;
 }
 
-conic_status conic_model_find_kind(conic_input *input, const char *path, conic_model_kind *kind) {
-  conic_status status = conic_input_skip_mark(input);
+conic_status conic_model_open(conic_context *context, const char *path, conic_input *input, conic_model_kind *kind) {
+  conic_status status = conic_input_open(context, path, input);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_input_skip_mark(input);
   if (status == CONIC_OK)
     status = conic_input_fill(input, CONIC_INPUT_LONGEST_LINE);
-  return status == CONIC_OK ? find_kind(input, path, kind) : status;
+  if (status == CONIC_OK)
+    status = find_kind(input, path, kind);
+  if (status != CONIC_OK)
+    conic_input_close(input);
+  return status;
 }
 
 /* Of all kinds but Assimp's. */
@@ -159,12 +166,10 @@ conic_status conic_model_read(conic_context *context, const char *path, const co
     return status;
   }
   if (status == CONIC_OK)
-    status = conic_input_open(context, path, &input);
+    status = conic_model_open(context, path, &input, &kind);
   if (status != CONIC_OK)
     return status;
-  status = conic_model_find_kind(&input, path, &kind);
-  if (status == CONIC_OK)
-    status = conic_model_read_kind(&input, kind, &settings, NULL, model);
+  status = conic_model_read_kind(&input, kind, &settings, NULL, model);
   conic_input_close(&input);
   if (status != CONIC_OK)
     conic_model_release(context, model);

@@ -65,10 +65,9 @@ static conic_status copy_lent_triangles(conic_context *context, const char *name
   status = copy_lent_splats(context, name, &points, options, model);
   if (status != CONIC_OK || lent->count == 0)
     return status;
-  model->triangles = conic_memory_allocate(context, lent->count, sizeof *model->triangles);
+  model->triangles = conic_memory_copy(context, lent->corners, lent->count * sizeof *model->triangles);
   if (!model->triangles)
     return CONIC_ERROR_MEMORY;
-  memcpy(model->triangles, lent->corners, lent->count * sizeof *model->triangles);
   model->n_triangles = lent->count;
   return options->keeps_faces ? keep_lent_coordinates(context, lent, model) : CONIC_OK;
 }

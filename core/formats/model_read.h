@@ -5,8 +5,9 @@
 #include "core/files/input.h"
 #include "core/splats/builder.h"
 
-/* Finds the format of a file at its start. Errors: INPUT, CANCELLED. */
-conic_status conic_model_find_kind(conic_input *input, const char *path, conic_model_kind *kind);
+/* Opens a file and finds its format at its start. On success the caller closes the input. Errors: as conic_input_open,
+ * and CANCELLED. */
+conic_status conic_model_open(conic_context *context, const char *path, conic_input *input, conic_model_kind *kind);
 
 /* Reads the file; with a delivery the points go there, except for an OBJ's. On failure *model is for the caller to
  * release. Errors: INPUT, MEMORY, CANCELLED, the receiver's. */

@@ -67,12 +67,10 @@ static conic_status pass_twice(streaming *s, conic_input *input, const char *pat
   if (status == CONIC_OK)
     status = conic_raw_colors_scale(s->context, &s->range, raw_kind, &s->scale);
   if (status == CONIC_OK)
-    status = conic_input_open(s->context, path, &again);
+    status = conic_model_open(s->context, path, &again, &s->kind);
   if (status != CONIC_OK)
     return status;
-  status = conic_model_find_kind(&again, path, &s->kind);
-  if (status == CONIC_OK)
-    status = pass(s, &again, decode_batch, s);
+  status = pass(s, &again, decode_batch, s);
   conic_input_close(&again);
   return status;
 }
@@ -87,11 +85,10 @@ conic_status conic_mesh_stream(conic_context *context, const char *path, conic_b
   conic_model model = {0};
   conic_model_kind kind;
   conic_read_options_init(&options);
-  conic_status status = conic_input_open(context, path, &input);
+  conic_status status = conic_model_open(context, path, &input, &kind);
   if (status != CONIC_OK)
     return status;
-  status = conic_model_find_kind(&input, path, &kind);
-  if (status == CONIC_OK && kind != CONIC_MODEL_PLY)
+  if (kind != CONIC_MODEL_PLY)
     status = conic_fail(context, CONIC_ERROR_INPUT, "%s: only of a PLY faces are read some at a time", path);
   if (status == CONIC_OK)
     status = conic_model_read_kind(&input, kind, &options, &delivery, &model);
@@ -118,13 +115,12 @@ conic_status conic_model_stream(conic_context *context, const char *path, const 
   if (status == CONIC_OK && conic_model_is_lent(context, path))
     return stream_lent(&s, path);
   if (status == CONIC_OK)
-    status = conic_input_open(context, path, &input);
+    status = conic_model_open(context, path, &input, &s.kind);
   if (status != CONIC_OK)
     return status;
   int is_pipe = input.descriptor == STDIN_FILENO || !input.has_size;
   conic_model_shape shape = {0};
-  status = conic_model_find_kind(&input, path, &s.kind);
-  if (status == CONIC_OK && s.kind == CONIC_MODEL_PLY && !is_pipe)
+  if (s.kind == CONIC_MODEL_PLY && !is_pipe)
     status = conic_model_look(context, path, options, &shape);
   if (status == CONIC_OK && s.kind == CONIC_MODEL_PLY && !shape.needs_survey)
     status = pass(&s, &input, receive, cookie);
@@ -149,13 +145,12 @@ conic_status conic_model_look(conic_context *context, const char *path, const co
   if (status == CONIC_OK && conic_model_is_lent(context, path))
     return CONIC_OK;
   if (status == CONIC_OK)
-    status = conic_input_open(context, path, &input);
+    status = conic_model_open(context, path, &input, &kind);
   if (status != CONIC_OK)
     return status;
-  status = conic_model_find_kind(&input, path, &kind);
-  if (status == CONIC_OK && input.has_size && input.descriptor != STDIN_FILENO && kind == CONIC_MODEL_PLY)
+  if (input.has_size && input.descriptor != STDIN_FILENO && kind == CONIC_MODEL_PLY)
     status = conic_ply_look(&input, &settings, shape);
-  else if (status == CONIC_OK && input.has_size && input.descriptor != STDIN_FILENO && kind == CONIC_MODEL_LAS)
+  else if (input.has_size && input.descriptor != STDIN_FILENO && kind == CONIC_MODEL_LAS)
     status = conic_las_look(&input, shape);
   conic_input_close(&input);
   return status;
@@ -163,12 +158,10 @@ conic_status conic_model_look(conic_context *context, const char *path, const co
 
 static conic_status pass_over_part(streaming *s, const char *path, conic_batch_receiver *receive, void *cookie) {
   conic_input input;
-  conic_status status = conic_input_open(s->context, path, &input);
+  conic_status status = conic_model_open(s->context, path, &input, &s->kind);
   if (status != CONIC_OK)
     return status;
-  status = conic_model_find_kind(&input, path, &s->kind);
-  if (status == CONIC_OK)
-    status = pass(s, &input, receive, cookie);
+  status = pass(s, &input, receive, cookie);
   conic_input_close(&input);
   return status;
 }

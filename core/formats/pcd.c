@@ -234,29 +234,6 @@ static conic_status wrong_bytes(const pcd_reader *reader, const char *what) {
                     (unsigned long long)conic_input_offset(reader->input));
 }
 
-/* Reads so many bytes of the file; where its size is not known, the memory grows with the bytes that come. */
-static conic_status read_bytes(pcd_reader *reader, uint64_t n_bytes, unsigned char **bytes) {
-  conic_input *input = reader->input;
-  size_t n = 0, capacity = 0;
-  if (n_bytes > conic_input_remaining_bytes(input))
-    return wrong_bytes(reader, "the file ends within its data");
-  while (n < n_bytes) {
-    conic_status status = conic_input_fill(input, 1);
-    size_t step = conic_input_available(input);
-    step = step < n_bytes - n ? step : (size_t)n_bytes - n;
-    if (status == CONIC_OK && step == 0)
-      return wrong_bytes(reader, "the file ends within its data");
-    if (status == CONIC_OK)
-      status = conic_memory_reserve(input->context, bytes, n, n + step, &capacity, 1);
-    if (status != CONIC_OK)
-      return status;
-    memcpy(*bytes + n, conic_input_bytes(input), step);
-    input->next += step;
-    n += step;
-  }
-  return CONIC_OK;
-}
-
 /* All x, then all y … */
 static conic_status append_unpacked(pcd_reader *reader, const unsigned char *bytes, size_t n_points) {
   conic_status status = CONIC_OK;
@@ -282,7 +259,12 @@ static conic_status read_compressed(pcd_reader *reader) {
   if (n_bytes > conic_lzf_most_bytes(n_packed))
     return wrong_bytes(reader, "the data cannot be so much when they are unpacked");
   input->next += 8;
-  status = read_bytes(reader, n_packed, &packed);
+  size_t n_taken = 0;
+  if (n_packed > conic_input_remaining_bytes(input))
+    return wrong_bytes(reader, "the file ends within its data");
+  status = conic_input_take(input, n_packed, &packed, &n_taken);
+  if (status == CONIC_OK && n_taken < n_packed)
+    status = wrong_bytes(reader, "the file ends within its data");
   if (status == CONIC_OK && n_bytes > 0) {
     bytes = conic_memory_allocate(input->context, (size_t)n_bytes, 1);
     status = bytes ? CONIC_OK : CONIC_ERROR_MEMORY;

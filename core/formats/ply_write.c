@@ -75,9 +75,7 @@ conic_status conic_splats_writer_open(conic_context *context, const char *path, 
   conic_srgb_thresholds(made->thresholds);
   size_t row_bytes = settings.encoding == CONIC_PLY_ASCII ? MAX_TEXT_BYTES : MAX_BINARY_BYTES;
   made->rows = conic_memory_allocate(context, BLOCK, row_bytes);
-  made->path = conic_memory_allocate(context, strlen(path) + 1, 1);
-  if (made->path)
-    memcpy(made->path, path, strlen(path) + 1);
+  made->path = conic_memory_copy_text(context, path);
   status = made->rows && made->path ? conic_output_open(context, path, &made->output) : CONIC_ERROR_MEMORY;
   if (status != CONIC_OK) {
     conic_splats_writer_abandon(made);

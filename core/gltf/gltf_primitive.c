@@ -1,6 +1,7 @@
 /* A primitive's vertices, as its file's morph targets and skins have them at rest, and its triangles. */
 #include "core/base/byte_order.h"
 #include "core/base/trigonometry.h"
+#include "core/base/vectors.h"
 #include "core/gltf/gltf_read.h"
 
 /* --- attributes --- */
@@ -109,23 +110,6 @@ static conic_status read_attribute(conic_gltf_reader *reader, const conic_gltf_n
 
 /* --- places --- */
 
-/* The rows that turn normals: the cofactors. A mirrored mesh has its corners turned round, so its normals change sign,
- * too; returns whether it is one. */
-static int find_normal_rows(const double place[3][4], double rows[3][3]) {
-  double determinant = 0.0;
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) {
-      const double *a = place[(i + 1) % 3], *b = place[(i + 2) % 3];
-      rows[i][j] = a[(j + 1) % 3] * b[(j + 2) % 3] - a[(j + 2) % 3] * b[(j + 1) % 3];
-    }
-  for (int j = 0; j < 3; j++)
-    determinant += place[0][j] * rows[0][j];
-  for (int i = 0; i < 3 && determinant < 0.0; i++)
-    for (int j = 0; j < 3; j++)
-      rows[i][j] = -rows[i][j];
-  return determinant < 0.0;
-}
-
 static void put_vertex(const double place[3][4], const double p[3], double to[3]) {
   for (int row = 0; row < 3; row++)
     to[row] = place[row][0] * p[0] + place[row][1] * p[1] + place[row][2] * p[2] + place[row][3];
@@ -223,12 +207,12 @@ static conic_status place_part(conic_gltf_reader *reader, const conic_gltf_node 
   double(*sums)[13], place[3][4], rows[3][3];
   conic_status status = find_influences(reader, node, primitive, part->n_vertices, &sums);
   memcpy(place, world, sizeof place);
-  *is_mirrored = find_normal_rows((const double(*)[4])place, rows);
+  *is_mirrored = conic_normal_rows((const double(*)[4])place, rows);
   for (size_t i = 0; status == CONIC_OK && i < part->n_vertices; i++) {
     if (sums && sums[i][12] != 0.0) {
       for (int k = 0; k < 12; k++)
         place[k / 4][k % 4] = sums[i][k] / sums[i][12];
-      int is_turned = find_normal_rows((const double(*)[4])place, rows);
+      int is_turned = conic_normal_rows((const double(*)[4])place, rows);
       *is_mirrored = i == 0 ? is_turned : *is_mirrored;
     }
     put_vertex((const double(*)[4])place, positions->values + 3 * i, part->position[i]);
@@ -459,7 +443,7 @@ conic_status conic_gltf_add_primitive(conic_gltf_reader *reader, const conic_glt
       conic_gltf_color_texture(gltf, conic_gltf_at(gltf, CONIC_GLTF_MATERIALS, primitive->material));
   conic_gltf_texture_use use = found ? *found : conic_gltf_no_material.base;
   double rows[3][3];
-  int is_mirrored = find_normal_rows(world, rows);
+  int is_mirrored = conic_normal_rows(world, rows);
   if (conic_gltf_find(gltf, primitive->attributes, "POSITION") == CONIC_GLTF_NONE)
     return CONIC_OK; /* as the specification says */
   use.texture = 0.0; /* whose coordinates these are does not matter */

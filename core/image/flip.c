@@ -107,17 +107,13 @@ static void xyz_of(const double rgb[3], double xyz[3]) {
   xyz[2] = (1425312.0 * rgb[0] + 8788810.0 * rgb[1] + 70074185.0 * rgb[2]) / (73733382.0 * 1.088900371);
 }
 
-static double unit(double v) {
-  return v > 0.0 ? v < 1.0 ? v : 1.0 : 0.0; /* NaN is 0 */
-}
-
 /* From Y, Cx, Cz back to linear RGB that a screen can show. */
 static void rgb_of(double y, double cx, double cz, double rgb[3]) {
   double relative = (y + 16.0) / 116.0;
   double x = (relative + cx / 500.0) * 0.950428545, z = (relative - cz / 200.0) * 1.088900371;
-  rgb[0] = unit(3.241003275 * x - 1.537398934 * relative - 0.498615861 * z);
-  rgb[1] = unit(-0.969224334 * x + 1.875930071 * relative + 0.041554224 * z);
-  rgb[2] = unit(0.055639423 * x - 0.204011202 * relative + 1.057148933 * z);
+  rgb[0] = conic_unit(3.241003275 * x - 1.537398934 * relative - 0.498615861 * z);
+  rgb[1] = conic_unit(-0.969224334 * x + 1.875930071 * relative + 0.041554224 * z);
+  rgb[2] = conic_unit(0.055639423 * x - 0.204011202 * relative + 1.057148933 * z);
 }
 
 static double lightness(double v) {
@@ -189,7 +185,7 @@ static void load_row(const conic_image *image, ptrdiff_t x_begin, ptrdiff_t y, s
   const float *row = rgba + 4 * clamp_to(y, (size_t)image->height) * (size_t)image->width;
   for (size_t i = 0; i < n; i++) {
     const float *pixel = row + 4 * clamp_to(x_begin + (ptrdiff_t)i, (size_t)image->width);
-    double rgb[3] = {unit((double)pixel[0]), unit((double)pixel[1]), unit((double)pixel[2])}, xyz[3];
+    double rgb[3] = {conic_unit((double)pixel[0]), conic_unit((double)pixel[1]), conic_unit((double)pixel[2])}, xyz[3];
     for (int c = 0; image->is_display && c < 3; c++)
       rgb[c] = conic_srgb_decode(rgb[c]);
     xyz_of(rgb, xyz);

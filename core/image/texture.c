@@ -214,10 +214,9 @@ conic_status conic_texture_create(conic_context *context, const conic_image *ima
   if (!image->planes[CONIC_PLANE_RGBA] || (wrap != CONIC_WRAP_REPEAT && wrap != CONIC_WRAP_CLAMP))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "a texture needs an image with colour, and a known wrap");
   size_t n_pixels = conic_image_pixels(image);
-  float *texels = conic_memory_allocate(context, n_pixels, 4 * sizeof *texels);
+  float *texels = conic_memory_copy(context, image->planes[CONIC_PLANE_RGBA], n_pixels * 4 * sizeof *texels);
   if (!texels)
     return CONIC_ERROR_MEMORY;
-  memcpy(texels, image->planes[CONIC_PLANE_RGBA], n_pixels * 4 * sizeof *texels);
   return make_texture(context, texels, image->width, image->height, wrap, texture);
 }
 

@@ -8,10 +8,6 @@
 
 CONIC_DEFINE_NAMES(conic_tone_name, conic_tone, CONIC_N_TONES, "srgb", "filmic", "aces", "agx")
 
-static double limit_to_screen(double v) {
-  return v > 0.0 ? v < 1.0 ? v : 1.0 : 0.0; /* NaN is 0 */
-}
-
 /* Hable's ((x·(A·x + C·B) + D·E)/(x·(A·x + B) + D·F)) − E/F with A to F = 0.15, 0.5, 0.1, 0.2, 0.02, 0.3, as one
  * fraction: this way black is exactly 0. */
 static double hable(double x) {
@@ -74,12 +70,12 @@ static void map_agx(double color[3]) {
   static const double lowest = -12.47393, highest = 4.026069, least = 0x1p-20;
   multiply_color(inset, color);
   for (int c = 0; c < 3; c++) {
-    double x = limit_to_screen((stops_of(color[c] > least ? color[c] : least) - lowest) / (highest - lowest));
+    double x = conic_unit((stops_of(color[c] > least ? color[c] : least) - lowest) / (highest - lowest));
     color[c] = (((((15.5 * x - 40.14) * x + 31.96) * x - 6.868) * x + 0.4298) * x + 0.1191) * x - 0.00232;
   }
   multiply_color(outset, color);
   for (int c = 0; c < 3; c++)
-    color[c] = conic_srgb_decode(limit_to_screen(color[c]));
+    color[c] = conic_srgb_decode(conic_unit(color[c]));
 }
 
 void conic_tone_map(conic_tone tone, const float linear[3], float mapped[3]) {
@@ -94,5 +90,5 @@ void conic_tone_map(conic_tone tone, const float linear[3], float mapped[3]) {
     color[c] = linear[c] > 0.0f ? linear[c] < FLT_MAX ? (double)linear[c] : (double)FLT_MAX : 0.0;
   maps[tone](color);
   for (int c = 0; c < 3; c++)
-    mapped[c] = (float)limit_to_screen(color[c]);
+    mapped[c] = (float)conic_unit(color[c]);
 }

@@ -185,15 +185,13 @@ static void take_limits(const xmlNode *limits, const char *low, const char *high
 
 static conic_status take_scan(tree_reader *reader, const xmlNode *node) {
   conic_e57_tree *tree = reader->tree;
-  conic_status status = conic_memory_reserve(reader->file->context, &tree->scans, tree->n_scans, tree->n_scans + 1,
-                                             &reader->scan_room, sizeof *tree->scans);
-  if (status != CONIC_OK)
-    return status;
-  conic_e57_scan *scan = &tree->scans[tree->n_scans++];
-  memset(scan, 0, sizeof *scan);
+  conic_e57_scan *scan =
+      conic_memory_add(reader->file->context, &tree->scans, &tree->n_scans, &reader->scan_room, sizeof *scan);
+  if (!scan)
+    return CONIC_ERROR_MEMORY;
   scan->first_column = tree->n_columns;
   take_limits(child_of(node, "colorLimits"), "colorRedMinimum", "colorRedMaximum", &scan->color);
-  status = take_station(reader, child_of(node, "pose"), scan);
+  conic_status status = take_station(reader, child_of(node, "pose"), scan);
   const xmlNode *points = child_of(node, "points");
   return status == CONIC_OK && points ? take_points_element(reader, points, scan) : status;
 }

@@ -9,14 +9,8 @@ uint64_t conic_lattice_kept(const conic_lattice *lattice, uint64_t found) {
 
 /* The slab whose points raise the number of kept points above `i`. */
 static size_t slab_of(const conic_lattice *lattice, uint64_t i) {
-  size_t low = 0, high = lattice->n_cells - 1;
-  while (low < high) {
-    size_t middle = low + (high - low) / 2;
-    if (conic_lattice_kept(lattice, lattice->found_before[middle + 1]) > i)
-      high = middle;
-    else
-      low = middle + 1;
-  }
+  size_t low = 0;
+  CONIC_BISECT(low, lattice->n_cells - 1, conic_lattice_kept(lattice, lattice->found_before[middle + 1]) <= i);
   return low;
 }
 

@@ -70,10 +70,6 @@ static const uint8_t snow[3] = {0xf6, 0xf8, 0xfb};
 #define STEEP_SLOPE 1.05
 #define SNOW_HEIGHT 0.42
 
-static double clamp01(double t) {
-  return t > 0.0 ? t < 1.0 ? t : 1.0 : 0.0;
-}
-
 static void mix_colors(const uint8_t to[3], double part, uint8_t color[3]) {
   for (int c = 0; c < 3; c++)
     color[c] = (uint8_t)((double)color[c] * (1.0 - part) + (double)to[c] * part + 0.5);
@@ -91,9 +87,9 @@ static void paint(uint64_t seed, double x, double z, const conic_terrain_place *
   uint8_t stone[3];
   conic_scene_blend(land, 6, height / SNOW_HEIGHT, color);
   conic_scene_blend(rock, 2, 0.5 + speckle.value, stone);
-  mix_colors(stone, clamp01((slope - STEEP_SLOPE + 0.2 * speckle.value) / 0.35), color);
-  double cover = (height - SNOW_HEIGHT) / 0.04 + 1.0 - clamp01((slope - 1.1) / 0.5);
-  mix_colors(snow, clamp01(cover), color);
+  mix_colors(stone, conic_unit((slope - STEEP_SLOPE + 0.2 * speckle.value) / 0.35), color);
+  double cover = (height - SNOW_HEIGHT) / 0.04 + 1.0 - conic_unit((slope - 1.1) / 0.5);
+  mix_colors(snow, conic_unit(cover), color);
 }
 
 typedef struct terrain {

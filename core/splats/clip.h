@@ -2,6 +2,7 @@
 #pragma once
 
 #include "conic/splats.h"
+#include "core/base/real.h"
 
 /* Whether it is a line at all: finite, and with a direction. */
 static inline int conic_clip_is_line(const float line[3]) {
@@ -10,14 +11,8 @@ static inline int conic_clip_is_line(const float line[3]) {
 
 /* The first record whose splat is not below `splat`. */
 static inline size_t conic_clip_find(const conic_splats *splats, size_t splat) {
-  size_t begin = 0, end = splats->n_clips;
-  while (begin < end) {
-    size_t middle = begin + (end - begin) / 2;
-    if (splats->clips[middle].splat < splat)
-      begin = middle + 1;
-    else
-      end = middle;
-  }
+  size_t begin = 0;
+  CONIC_BISECT(begin, splats->n_clips, splats->clips[middle].splat < splat);
   return begin;
 }
 

@@ -36,12 +36,10 @@ int conic_field_is(const char *name, const char *other) {
 
 conic_status conic_fields_add(conic_builder *builder, const char *name, size_t length, const char *type) {
   conic_model *model = builder->model;
-  conic_status status = conic_memory_reserve(builder->context, &model->fields, model->n_fields, model->n_fields + 1,
-                                             &builder->field_capacity, sizeof *model->fields);
-  if (status != CONIC_OK)
-    return status;
-  conic_model_field *field = &model->fields[model->n_fields++];
-  memset(field, 0, sizeof *field);
+  conic_model_field *field =
+      conic_memory_add(builder->context, &model->fields, &model->n_fields, &builder->field_capacity, sizeof *field);
+  if (!field)
+    return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < length && i + 1 < NAME_ROOM; i++) /* what would spoil a line of a terminal is no letter */
     field->name[i] = (char)((unsigned char)name[i] < 0x20 || name[i] == 0x7f ? '?' : name[i]);
   field->type = type;

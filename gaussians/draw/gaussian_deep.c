@@ -2,7 +2,6 @@
 #include <stdlib.h>
 
 #include "core/base/base.h"
-#include "core/base/radix.h"
 #include "core/pictures/image_exr_deep.h"
 #include "gaussians/draw/gaussian_walk.h"
 #include "gaussians/draw/surfaces_join.h"

@@ -68,10 +68,7 @@ static conic_status read_levels_meta(levels_reader *self) {
              : json->status;
 }
 
-static int compare_places(const void *a, const void *b) {
-  const size_t *first = a, *second = b;
-  return *first > *second ? 1 : *first < *second ? -1 : 0;
-}
+CONIC_DEFINE_ORDER_OF(compare_places, size_t)
 
 /* A .sog that belongs to it, which lies beside or below. */
 static conic_status read_unit(const levels_reader *self, size_t i_file, conic_gaussians *unit) {

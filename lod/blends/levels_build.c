@@ -183,14 +183,8 @@ typedef struct curve_parts {
 } curve_parts;
 
 static size_t part_of(const curve_parts *parts, uint64_t key) {
-  size_t low = 0, high = parts->n - 1;
-  while (low < high) {
-    const size_t middle = (low + high) / 2;
-    if (key <= parts->ends[middle])
-      high = middle;
-    else
-      low = middle + 1;
-  }
+  size_t low = 0;
+  CONIC_BISECT(low, parts->n - 1, parts->ends[middle] < key);
   return low;
 }
 

@@ -45,12 +45,10 @@ conic_status conic_levels_open(conic_context *context, const char *name, const c
   l->memory_bytes = own.memory_bytes;
   l->until_s = own.seconds > 0.0 ? conic_seconds_now() + own.seconds : HUGE_VAL;
   conic_layers_access_ranges(&own, l->until_s, &options);
-  l->name = conic_memory_allocate(context, strlen(name) + 1, 1);
+  l->name = conic_memory_copy_text(context, name);
   conic_status status = l->name ? conic_zstd_create(context, &l->zstd) : CONIC_ERROR_MEMORY;
-  if (status == CONIC_OK) {
-    memcpy(l->name, name, strlen(name) + 1);
+  if (status == CONIC_OK)
     status = conic_ranges_open(context, name, &options, &l->ranges);
-  }
   if (status == CONIC_OK)
     status = read_levels_start(l);
   if (status != CONIC_OK)

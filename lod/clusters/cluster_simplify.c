@@ -78,10 +78,10 @@ static void draw_together(conic_simplifier *s, uint32_t u, uint32_t v) {
     slot = following;
   }
   prune_ring(s, v);
-  /* Notes of a vertex between two clusters that it is there up to the last stage that was taken. */
-  uint32_t slot = s->chains->of_vertex[s->mesh->adjacency->place[s->vertices[u].original]];
-  if (slot != CONIC_NO_SLOT)
-    s->chains->slots[slot].stage = s->stage;
+  /* A vertex between two clusters is there up to the last stage that was taken. */
+  uint32_t chain = s->chains->of_vertex[s->mesh->adjacency->place[s->vertices[u].original]];
+  if (chain != CONIC_NO_SLOT)
+    s->chains->slots[chain].stage = s->stage;
   memcpy(s->vertices[v].at, s->vertices[u].to, sizeof s->vertices[v].at);
   s->vertices[u].is_gone = 1;
   conic_quadric_add(&s->vertices[v].quadric, &s->vertices[u].quadric);

@@ -193,14 +193,8 @@ static double distance2_beside(const conic_simplifier *s, const conic_simplifier
 /* The greater of `most2` and how far a place is whose triangle becomes a fan beside a cluster of an earlier stage. */
 static double farther_of_fans(const conic_simplifier *s, const conic_simplifier_triangle *t, const double at[3],
                               double most2) {
-  size_t low = 0, high = s->n_borders, triangle = (size_t)(t - s->triangles);
-  while (low < high) {
-    size_t middle = low + (high - low) / 2;
-    if (s->borders[middle].of.edge / 4 < triangle)
-      low = middle + 1;
-    else
-      high = middle;
-  }
+  size_t low = 0, triangle = (size_t)(t - s->triangles);
+  CONIC_BISECT(low, s->n_borders, s->borders[middle].of.edge / 4 < triangle);
   for (; low < s->n_borders && s->borders[low].of.edge / 4 == triangle; low++)
     for (uint32_t stage = 0; stage < s->stage; stage++) {
       const conic_cluster_border *border = &s->borders[low].of;

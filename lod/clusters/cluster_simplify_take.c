@@ -1,6 +1,6 @@
 /* Levels of what simplifying has left: each cluster's triangles and their borders. */
 
-#include "core/base/radix.h"
+#include "core/base/real.h"
 #include "lod/clusters/cluster_simplifier.h"
 
 /* --- borders --- */
@@ -108,12 +108,10 @@ typedef struct taking {
 static conic_status add_moved(const taking *t, uint32_t vertex, uint32_t original, uint32_t normal) {
   conic_cluster_levels *levels = t->levels;
   conic_simplifier_vertex *v = &t->s->vertices[vertex];
-  conic_status status = conic_memory_reserve(t->s->context, &levels->moved, levels->n_moved, levels->n_moved + 1,
-                                             &levels->moved_room, sizeof *levels->moved);
-  if (status != CONIC_OK)
-    return status;
-  conic_moved_vertex *moved = &levels->moved[levels->n_moved];
-  memset(moved, 0, sizeof *moved);
+  conic_moved_vertex *moved =
+      conic_memory_add(t->s->context, &levels->moved, &levels->n_moved, &levels->moved_room, sizeof *moved);
+  if (!moved)
+    return CONIC_ERROR_MEMORY;
   for (int axis = 0; axis < 3; axis++) {
     moved->at[axis] = (float)v->at[axis];
     if (t->normals.normals)
@@ -122,7 +120,7 @@ static conic_status add_moved(const taking *t, uint32_t vertex, uint32_t origina
   moved->original = original;
   moved->of_normal = normal;
   moved->next = v->moved;
-  v->moved = (uint32_t)levels->n_moved++;
+  v->moved = (uint32_t)(levels->n_moved - 1);
   return CONIC_OK;
 }
 

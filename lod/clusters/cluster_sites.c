@@ -150,12 +150,9 @@ static conic_status add_site(conic_sampler *s, uint32_t i_lattice, int i, int j,
   const conic_face_lattice *l = &s->now.lattices[i_lattice];
   uint32_t place = conic_face_lattice_place(l, i, j);
   const double *at = s->places[place];
-  conic_status status = conic_memory_reserve(s->context, &s->now.sites, s->now.n_sites, s->now.n_sites + 1,
-                                             &s->now.sites_room, sizeof *s->now.sites);
-  if (status != CONIC_OK)
-    return status;
-  conic_site *site = &s->now.sites[s->now.n_sites];
-  memset(site, 0, sizeof *site);
+  conic_site *site = conic_memory_add(s->context, &s->now.sites, &s->now.n_sites, &s->now.sites_room, sizeof *site);
+  if (!site)
+    return CONIC_ERROR_MEMORY;
   memcpy(site->at, at, sizeof site->at);
   memcpy(site->foot, at, sizeof site->foot);
   conic_face_lattice_bary(l, i, j, site->bary);
@@ -164,7 +161,7 @@ static conic_status add_site(conic_sampler *s, uint32_t i_lattice, int i, int j,
   site->place = place;
   site->last = CONIC_NO_SITE;
   site->spacing = conic_spacing_at(s, s->depth[i_lattice]);
-  conic_place_table_put(&s->table, (uint32_t)s->now.n_sites++, at, s->facing[i_lattice], first);
+  conic_place_table_put(&s->table, (uint32_t)(s->now.n_sites - 1), at, s->facing[i_lattice], first);
   return CONIC_OK;
 }
 

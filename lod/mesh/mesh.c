@@ -271,10 +271,8 @@ conic_status conic_flat_mesh(conic_context *context, const conic_triangles *mesh
     memcpy(flat->corners, corners, mesh->count * sizeof *corners);
     copy_attributes(&f, flat);
     if (mesh->material) {
-      flat->material = conic_memory_allocate(context, mesh->count, sizeof *flat->material);
+      flat->material = conic_memory_copy(context, mesh->material, mesh->count * sizeof *flat->material);
       status = flat->material ? CONIC_OK : CONIC_ERROR_MEMORY;
-      if (status == CONIC_OK)
-        memcpy(flat->material, mesh->material, mesh->count * sizeof *flat->material);
     }
   }
   conic_memory_release_these(context, f.wedges, f.table, corners);

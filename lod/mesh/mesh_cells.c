@@ -170,10 +170,7 @@ typedef struct cell_samples {
   double faces_each; /* for how many faces one stands */
 } cell_samples;
 
-static int compare_floats(const void *a, const void *b) {
-  float first = *(const float *)a, second = *(const float *)b;
-  return (first > second) - (first < second);
-}
+CONIC_DEFINE_ORDER_OF(compare_floats, float)
 
 /* The middle along the longest axis; 0 where all lie at one place. */
 static int find_cell_plane(float (*at)[3], size_t n, float *sorted, conic_cell_node *plane) {
@@ -357,16 +354,10 @@ static size_t cells_beside(const conic_mesh_cells *c, const uint32_t corners[3],
   for (int k = 0; k < 3; k++) {
     const float *at = position_of(c, corners[k]);
     shared_place wanted = shared_place_at(at, 0);
-    size_t hash = hash_place(&wanted), low = 0, high = c->n_shared;
+    size_t hash = hash_place(&wanted), low = 0;
     if (!(c->filter[hash / 8] >> hash % 8 & 1))
       continue;
-    while (low < high) {
-      size_t middle = low + (high - low) / 2;
-      if (compare_shared(&c->shared[middle], &wanted) < 0)
-        low = middle + 1;
-      else
-        high = middle;
-    }
+    CONIC_BISECT(low, c->n_shared, compare_shared(&c->shared[middle], &wanted) < 0);
     for (; low < c->n_shared && memcmp(c->shared[low].at, wanted.at, sizeof wanted.at) == 0; low++) {
       add_cell(cells, &n, MOST_BESIDE, own, c->shared[low].cell);
       add_cell(cells, &n, MOST_BESIDE, own, cell_at(c, at));

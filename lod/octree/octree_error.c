@@ -252,16 +252,10 @@ static void list_members(neighbourhood *around, size_t root) {
 
 /* The first of the subtree's discs whose leaves begin at `leaf` or later. */
 static size_t find_disc(const neighbourhood *around, uint32_t leaf) {
-  size_t begin = 0, end = around->n_own, guess = leaf - around->first_leaf[0]; /* right where all discs are leaves */
-  if (guess < end && around->first_leaf[guess] == leaf)
+  size_t begin = 0, guess = leaf - around->first_leaf[0]; /* right where all discs are leaves */
+  if (guess < around->n_own && around->first_leaf[guess] == leaf)
     return guess;
-  while (begin < end) {
-    size_t middle = begin + (end - begin) / 2;
-    if (around->first_leaf[middle] < leaf)
-      begin = middle + 1;
-    else
-      end = middle;
-  }
+  CONIC_BISECT(begin, around->n_own, around->first_leaf[middle] < leaf);
   return begin;
 }
 

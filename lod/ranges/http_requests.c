@@ -8,7 +8,7 @@
 
 #include "core/base/clock.h"
 #include "core/base/memory.h"
-#include "core/base/radix.h"
+#include "core/base/real.h"
 
 enum {
   JOINED_BYTES = 1 << 19, /* ranges are joined to requests of up to so many, */
@@ -32,12 +32,7 @@ static const double behind_s = 2.0;
 static conic_http_ready *add_ready(conic_http_ranges *http) {
   if (http->first_ready == http->n_ready)
     http->first_ready = http->n_ready = 0;
-  if (conic_memory_reserve(http->base.context, &http->ready, http->n_ready, http->n_ready + 1, &http->ready_room,
-                           sizeof *http->ready) != CONIC_OK)
-    return NULL;
-  conic_http_ready *added = &http->ready[http->n_ready++];
-  memset(added, 0, sizeof *added);
-  return added;
+  return conic_memory_add(http->base.context, &http->ready, &http->n_ready, &http->ready_room, sizeof *http->ready);
 }
 
 static int answer_from(conic_http_ranges *http, conic_http_body *from, uint64_t body_offset, const conic_range *range) {

@@ -93,7 +93,8 @@ void conic_ranges_cancel(conic_ranges *ranges) {
   halt_ranges(ranges);
   ranges->queue.n = 0;
   ranges->n_pending = 0;
-  ranges->backend->cancel(ranges);
+  if (ranges->backend->cancel)
+    ranges->backend->cancel(ranges);
 }
 
 size_t conic_ranges_pending(const conic_ranges *ranges) {
@@ -129,9 +130,7 @@ conic_status conic_ranges_read(conic_ranges *ranges, const char *name, const con
   if (answer.status != CONIC_OK)
     return conic_fail(ranges->context, answer.status, "%s: cannot read%s%s: %s (at byte %llu)", name,
                       range->file[0] ? " " : "", range->file, answer.reason, (unsigned long long)range->offset);
-  *bytes = conic_memory_allocate(ranges->context, answer.n_bytes, 1);
-  if (*bytes && answer.n_bytes > 0)
-    memcpy(*bytes, answer.bytes, answer.n_bytes);
+  *bytes = conic_memory_copy(ranges->context, answer.bytes, answer.n_bytes);
   *n_bytes = answer.n_bytes;
   conic_ranges_release(ranges, &answer);
   return *bytes ? CONIC_OK : CONIC_ERROR_MEMORY;

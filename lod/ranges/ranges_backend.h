@@ -28,7 +28,7 @@ void conic_range_queue_release(conic_context *context, conic_range_queue *queue)
 typedef struct conic_ranges_backend {
   int (*next)(conic_ranges *ranges, double wait_seconds, conic_range_answer *answer);
   void (*release)(conic_ranges *ranges, conic_range_answer *answer);
-  void (*cancel)(conic_ranges *ranges); /* what is under way; the queue is empty already */
+  void (*cancel)(conic_ranges *ranges); /* what is under way; the queue is empty already; null: nothing ever is */
   int (*go_on)(conic_ranges *ranges);   /* starts what conic_ranges_go_on does: 1, or 0; null: nothing */
   void (*halt)(conic_ranges *ranges);   /* and ends it */
   void (*close)(conic_ranges *ranges);  /* releases all but the queue, the struct itself included */

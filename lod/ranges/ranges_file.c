@@ -76,17 +76,13 @@ static void release_file(conic_ranges *ranges, conic_range_answer *answer) {
   file->n_read = 0;
 }
 
-static void cancel(conic_ranges *ranges) {
-  (void)ranges; /* nothing is ever under way */
-}
-
 static void close_file(conic_ranges *ranges) {
   file_ranges *file = (file_ranges *)ranges;
   conic_mapping_close(ranges->context, &file->mapping);
   conic_memory_release_these(ranges->context, file->path, file);
 }
 
-static const conic_ranges_backend backend = {next, release_file, cancel, NULL, NULL, close_file};
+static const conic_ranges_backend backend = {next, release_file, NULL, NULL, NULL, close_file};
 
 conic_status conic_ranges_open_file(conic_context *context, const char *path, conic_ranges **ranges) {
   file_ranges *file = conic_memory_allocate_zeroed(context, 1, sizeof *file);
@@ -94,13 +90,12 @@ conic_status conic_ranges_open_file(conic_context *context, const char *path, co
     return CONIC_ERROR_MEMORY;
   file->base.context = context;
   file->base.backend = &backend;
-  file->path = conic_memory_allocate(context, strlen(path) + 1, 1);
+  file->path = conic_memory_copy_text(context, path);
   conic_status status = file->path ? conic_mapping_open(context, path, &file->mapping) : CONIC_ERROR_MEMORY;
   if (status != CONIC_OK) {
     close_file(&file->base);
     return status;
   }
-  memcpy(file->path, path, strlen(path) + 1);
   file->base.size = file->mapping.n_bytes;
   *ranges = &file->base;
   return CONIC_OK;

@@ -198,11 +198,9 @@ static const conic_curl_bridge_functions *load_curl(char message[CONIC_MODULE_ME
 
 static conic_status start(conic_http_ranges *http, const char *url) {
   conic_context *context = http->base.context;
-  size_t length = strlen(url) + 1;
-  http->url = conic_memory_allocate(context, length, 1);
+  http->url = conic_memory_copy_text(context, url);
   if (!http->url)
     return CONIC_ERROR_MEMORY;
-  memcpy(http->url, url, length);
   char message[CONIC_MODULE_MESSAGE];
   http->curl = load_curl(message);
   if (!http->curl)

@@ -136,19 +136,13 @@ static conic_status sort_into_cells(cell_job *j) {
   return CONIC_OK;
 }
 
-static int compare_in_order(double a, double b, uint32_t i, uint32_t j) {
-  return a != b ? (a > b ? 1 : -1) : (i > j) - (i < j);
-}
-
 static int compare_uncertain(const void *a, const void *b) {
   const oracle_uncertain *const *x = a, *const *y = b;
-  return compare_in_order((double)(float)(*x)->key.v, (double)(float)(*y)->key.v, (*x)->index, (*y)->index);
+  int order = CONIC_ORDER((float)(*x)->key.v, (float)(*y)->key.v);
+  return order ? order : CONIC_ORDER((*x)->index, (*y)->index);
 }
 
-static int compare_meetings(const void *a, const void *b) {
-  const oracle_meeting *x = a, *y = b;
-  return compare_in_order(x->key, y->key, x->g->index, y->g->index);
-}
+CONIC_DEFINE_ORDER_BY_TWO(compare_meetings, oracle_meeting, key, g->index)
 
 static void release_worker(conic_context *context, cell_worker *w) {
   conic_memory_release_these(context, w->gaussians, (void *)w->order, w->meetings, w->steps, w->has_color);

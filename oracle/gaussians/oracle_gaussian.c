@@ -225,7 +225,10 @@ static int place_solid(const oracle_gaussian_view *view, oracle_gaussian *g) {
   return cover_box(view, (const double[2]){u.radius[0].v, u.radius[1].v}, g);
 }
 
-static double number_of_half(uint16_t half) {
+double conic_oracle_harmonic_at(const conic_gaussians *set, size_t at) {
+  if (set->sh)
+    return (double)set->sh[at];
+  uint16_t half = set->sh_half[at];
   int exponent = half >> 10 & 31, fraction = half & 1023;
   double size = exponent ? 1024.0 + fraction : fraction;
   if (exponent == 31)
@@ -240,7 +243,7 @@ static double number_of_half(uint16_t half) {
 void conic_oracle_harmonics_of(const conic_gaussians *set, size_t i, double *sh) {
   const size_t n = (size_t)(set->sh_degree + 1) * (size_t)(set->sh_degree + 1) * 3;
   for (size_t k = 0; k < n; k++)
-    sh[k] = set->sh ? (double)set->sh[i * n + k] : number_of_half(set->sh_half[i * n + k]);
+    sh[k] = conic_oracle_harmonic_at(set, i * n + k);
 }
 
 static void color_towards_eye(const oracle_gaussian_view *view, const conic_gaussians *set, const double mean[3],

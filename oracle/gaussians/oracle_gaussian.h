@@ -46,7 +46,8 @@ double conic_oracle_quaternion(const conic_profile_row *rules, const conic_gauss
 double conic_oracle_longest_axis(const oracle_gaussian_view *view);
 /* The rotation of a quaternion of unit length. */
 void conic_oracle_rotation(const double q[4], double r[3][3]);
-/* Its harmonics' (degree + 1)² × 3 numbers. */
+/* A number of the harmonics of all; and one Gaussian's (degree + 1)² × 3. */
+double conic_oracle_harmonic_at(const conic_gaussians *set, size_t at);
 void conic_oracle_harmonics_of(const conic_gaussians *set, size_t i, double *sh);
 
 /* Its opacity at a place of the screen and the depth there; 0 where the profile leaves it out. */

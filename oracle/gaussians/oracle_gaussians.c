@@ -123,19 +123,8 @@ typedef struct job {
   conic_gaussian_reference *reference;
 } job;
 
-static int compare_order(float a, float b, uint32_t i, uint32_t j) {
-  return a != b ? (a > b ? 1 : -1) : (i > j) - (i < j);
-}
-
-static int compare_gaussians(const void *a, const void *b) {
-  const oracle_gaussian *x = a, *y = b;
-  return compare_order(x->key, y->key, x->index, y->index);
-}
-
-static int compare_coverings(const void *a, const void *b) {
-  const covering *x = a, *y = b;
-  return compare_order(x->key, y->key, x->gaussian->index, y->gaussian->index);
-}
+CONIC_DEFINE_ORDER_BY_TWO(compare_gaussians, oracle_gaussian, key, index)
+CONIC_DEFINE_ORDER_BY_TWO(compare_coverings, covering, key, gaussian->index)
 
 static void place_gaussians(void *data, size_t i_run) {
   job *j = data;

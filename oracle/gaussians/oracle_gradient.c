@@ -1,7 +1,7 @@
 /* The derivative of a picture of Gaussians: cells of pixels, each with the Gaussians that it may show in their order,
  * and what the pixels give them summed up pixel by pixel, cell by cell, whatever thread did which. */
 
-#include "core/base/radix.h"
+#include "core/base/real.h"
 #include "oracle/gaussians/oracle_gradient_job.h"
 
 enum { SHOW_RUN = 1024, EDGE = 16 };

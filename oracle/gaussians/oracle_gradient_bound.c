@@ -1,7 +1,7 @@
 /* What decisions in doubt may change in a pixel's part of the derivative: each is followed the other way by itself, and
  * what that changes is added up. α's and T's roundings, which put them in doubt, are of first order. */
 
-#include "core/base/radix.h"
+#include "core/base/real.h"
 #include "oracle/gaussians/oracle_gradient_job.h"
 
 #define UNIT ORACLE_FLOAT_UNIT

@@ -75,10 +75,7 @@ static void list_run(void *data, size_t i_run) {
   }
 }
 
-static int compare_entries(const void *a, const void *b) {
-  const list_entry *x = a, *y = b;
-  return x->id != y->id ? (x->id > y->id ? 1 : -1) : (x->gaussian > y->gaussian) - (x->gaussian < y->gaussian);
-}
+CONIC_DEFINE_ORDER_BY_TWO(compare_entries, list_entry, id, gaussian)
 
 static size_t n_runs_of(const intermediates_finding *j) {
   return (j->to->count + A_RUN - 1) / A_RUN;

@@ -1,19 +1,6 @@
 /* The colour of a Gaussian, and how far roundings may take it. */
 #include "oracle/gaussians/oracle_uncertain.h"
 
-static double sh_number(const conic_gaussians *set, size_t at) {
-  if (set->sh)
-    return (double)set->sh[at];
-  uint16_t half = set->sh_half[at];
-  int exponent = half >> 10 & 31;
-  double size = exponent ? 1024.0 + (half & 1023) : half & 1023;
-  for (int k = exponent ? exponent : 1; k < 25; k++)
-    size *= 0.5;
-  for (int k = 25; k < exponent; k++)
-    size *= 2.0;
-  return exponent == 31 ? INFINITY : half & 0x8000 ? -size : size;
-}
-
 /* max(0, ½ + Σ sh·Y): each Y is rounded, each product, and each sum. In float the direction is off, too: by the
  * addition theorem, Y of degree l grows by at most √(l·(l + 1)·(2l + 1)/4π) along the sphere; twice that covers what a
  * direction that is not quite of unit length does. */
@@ -38,7 +25,7 @@ int conic_oracle_uncertain_color(const oracle_doubting *d, oracle_uncertain *g) 
   for (size_t k = 0; k < n; k++) {
     int l = k < 1 ? 0 : k < 4 ? 1 : k < 9 ? 2 : k < 16 ? 3 : 4;
     for (size_t c = 0; c < 3; c++) {
-      double coefficient = sh_number(set, (i * n_stored + k) * 3 + c);
+      double coefficient = conic_oracle_harmonic_at(set, (i * n_stored + k) * 3 + c);
       sum[c] += y[k] * coefficient;
       size[c] += fabs(y[k] * coefficient);
       turned[c] += 2.0 * off * sqrt(l * (l + 1) * (2 * l + 1) / 12.566) * fabs(coefficient);

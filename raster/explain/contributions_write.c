@@ -1,7 +1,6 @@
 /* Every pixel's visible splats and its visible triangle, line by line, into a deep image. */
 
 #include "core/base/base.h"
-#include "core/base/radix.h"
 #include "core/pictures/image_exr_deep.h"
 #include "raster/explain/pixel_contributions.h"
 

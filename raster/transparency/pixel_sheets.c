@@ -1,7 +1,6 @@
 #include "raster/transparency/pixel_sheets.h"
 
 #include "core/base/base.h"
-#include "core/base/radix.h"
 #include "raster/transparency/triangle_alpha.h"
 
 /* The sums over a sheet, as the picture forms them. */

@@ -9,10 +9,6 @@ enum { FIRST_PARTS = 2, LAST_PARTS = 10 };
 /* The picture is weighed by so many slices, about. */
 enum { SLICES = 1024 };
 
-static int lesser_row(int a, int b) {
-  return a < b ? a : b;
-}
-
 /* Rows in pieces of `rows`, none of them in two bands; behind *n strips of a list, which may be null. */
 static void slice_rows(const conic_source_windows *w, int y, int y_end, int rows, conic_strip *list, size_t *n) {
   while (y < y_end) {
@@ -106,7 +102,7 @@ conic_status conic_list_strips(const conic_source_windows *windows, const conic_
   conic_context *context = windows->source->context;
   int rows = most_rows;
   if (n_processes > 1)
-    rows = lesser_row(((windows->camera.height - 1) / SLICES + step) / step * step, most_rows);
+    rows = conic_least(((windows->camera.height - 1) / SLICES + step) / step * step, most_rows);
   *n = slice_picture(windows, kept, n_kept, rows, NULL);
   *strips = conic_memory_allocate(context, *n, sizeof **strips);
   if (!*strips)

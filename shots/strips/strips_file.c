@@ -72,13 +72,6 @@ static int is_record_sound(const strips_reading *r, const conic_strip_piece *p) 
   return p->pixel_bytes == row_bytes || (p->packed_bytes && !p->pixel_bytes);
 }
 
-static conic_status add_record(strips_reading *r, const conic_strip_record *record) {
-  conic_status status = conic_memory_reserve(r->context, &r->records, r->n, r->n + 1, &r->room, sizeof *r->records);
-  if (status == CONIC_OK)
-    r->records[r->n++] = *record;
-  return status;
-}
-
 static conic_status list_strip_records(strips_reading *r) {
   uint64_t at = HEAD_BYTES;
   conic_status status = CONIC_OK;
@@ -93,7 +86,7 @@ static conic_status list_strip_records(strips_reading *r) {
     at = record.at + following_bytes(&record.piece);
     record.i = r->n;
     if (is_record_sound(r, &record.piece))
-      status = add_record(r, &record);
+      status = conic_memory_append(r->context, &r->records, &r->n, &r->room, &record, sizeof record);
   }
   atomic_store(&r->file->list.n_bytes, at);
   return status;

@@ -124,14 +124,9 @@ static conic_status write_piece(conic_strips_writer *w, const conic_strip_piece 
 /* --- pieces before their turn --- */
 
 static conic_status wait_with(conic_strips_writer *w, const conic_strip_record *record) {
-  conic_context *context = w->context;
   if (w->first_waiting == w->n_waiting)
     w->first_waiting = w->n_waiting = 0;
-  conic_status status =
-      conic_memory_reserve(context, &w->waiting, w->n_waiting, w->n_waiting + 1, &w->waiting_room, sizeof *w->waiting);
-  if (status == CONIC_OK)
-    w->waiting[w->n_waiting++] = *record;
-  return status;
+  return conic_memory_append(w->context, &w->waiting, &w->n_waiting, &w->waiting_room, record, sizeof *record);
 }
 
 static conic_status put_piece_off(conic_strips_writer *w, const conic_strip_piece *piece, const char *bytes) {

@@ -1,7 +1,7 @@
 /* Models of meshes that are larger than memory: cell by cell, each built with the faces about it, so that cells meet
  * without a gap. */
 
-#include "core/base/radix.h"
+#include "core/base/real.h"
 #include "lod/hybrid/build/hybrid_build.h"
 #include "lod/hybrid/model/hybrid_store.h"
 #include "lod/mesh/mesh_cells.h"

@@ -113,12 +113,9 @@ static uint32_t nearest_alike(const conic_sampler *s, const surfel_piece *p, dou
 }
 
 static conic_status add_site(conic_sampler *s, const surfel_piece *p, double spacing) {
-  conic_status status = conic_memory_reserve(s->context, &s->now.sites, s->now.n_sites, s->now.n_sites + 1,
-                                             &s->now.sites_room, sizeof *s->now.sites);
-  if (status != CONIC_OK)
-    return status;
-  conic_site *site = &s->now.sites[s->now.n_sites++];
-  memset(site, 0, sizeof *site);
+  conic_site *site = conic_memory_add(s->context, &s->now.sites, &s->now.n_sites, &s->now.sites_room, sizeof *site);
+  if (!site)
+    return CONIC_ERROR_MEMORY;
   memcpy(site->at, p->at, sizeof site->at);
   memcpy(site->facing, p->normal, sizeof site->facing);
   site->face = p->surfel->face;

@@ -31,10 +31,9 @@ static conic_status append_chunk(conic_context *context, conic_hybrid_pile *pile
   if (n_bytes == 0)
     return CONIC_OK;
   if (chunk >= part->n_levels && cluster < part->n_clusters) {
-    turned = conic_memory_allocate(context, n_bytes, 1);
+    turned = conic_memory_copy(context, bytes, n_bytes);
     if (!turned)
       return CONIC_ERROR_MEMORY;
-    memcpy(turned, bytes, n_bytes);
     conic_cluster_border *borders =
         (conic_cluster_border *)(void *)(turned + CONIC_HYBRID_SUM_BYTES + 4 * (size_t)part->clusters[cluster].n_slots);
     for (size_t i = 0; i < part->clusters[cluster].n_borders; i++)

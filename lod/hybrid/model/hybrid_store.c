@@ -115,10 +115,9 @@ static conic_status take_answer(const conic_hybrid *h, const conic_range_answer 
     return fail_chunk(h, answer->id, answer->status, answer->reason);
   while (store->oldest != CONIC_NO_CHUNK && store->traffic.n_kept_bytes + answer->n_bytes > store->cache_bytes)
     drop_oldest(h);
-  unsigned char *bytes = conic_memory_allocate(store->context, answer->n_bytes, 1);
+  unsigned char *bytes = conic_memory_copy(store->context, answer->bytes, answer->n_bytes);
   if (!bytes)
     return CONIC_ERROR_MEMORY;
-  memcpy(bytes, answer->bytes, answer->n_bytes);
   const char *wrong = conic_hybrid_take_chunk(h, answer->id, bytes);
   if (!wrong) {
     slot->bytes = bytes;

@@ -1,5 +1,5 @@
 /* The hierarchy over the clusters. */
-#include "core/base/radix.h"
+#include "core/base/real.h"
 #include "lod/hybrid/model/hybrid_model.h"
 
 /* Halves like these need no more levels of nodes than they must. */

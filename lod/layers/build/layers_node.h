@@ -30,14 +30,8 @@ static inline size_t conic_layers_most_in_leaf(const conic_layers_plan *plan) {
 
 /* How many of n keys are not above `key`. */
 static inline size_t conic_layers_count_to(const void *keys, size_t stride, size_t n, uint64_t key) {
-  size_t low = 0, high = n;
-  while (low < high) {
-    size_t middle = low + (high - low) / 2;
-    if (*(const uint64_t *)(const void *)((const char *)keys + middle * stride) <= key)
-      low = middle + 1;
-    else
-      high = middle;
-  }
+  size_t low = 0;
+  CONIC_BISECT(low, n, *(const uint64_t *)(const void *)((const char *)keys + middle * stride) <= key);
   return low;
 }
 
@@ -57,10 +51,7 @@ static inline size_t conic_layers_middle(const void *keys, size_t stride, size_t
   return first + conic_layers_count_to(from, stride, end - first, (last >> (n_bits - 1) << (n_bits - 1)) - 1);
 }
 
-static inline int conic_layers_compare_keys(const void *a, const void *b) {
-  uint64_t first = *(const uint64_t *)a, second = *(const uint64_t *)b;
-  return (first > second) - (first < second);
-}
+CONIC_DEFINE_ORDER_OF(conic_layers_compare_keys, uint64_t)
 
 /* --- nodes --- */
 

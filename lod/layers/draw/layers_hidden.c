@@ -75,10 +75,7 @@ static void sort_by_depth(const conic_layers_place *places, uint32_t *order, uin
   memcpy(order, other, n * sizeof *order);
 }
 
-static int compare_place_numbers(const void *a, const void *b) {
-  uint32_t first = *(const uint32_t *)a, second = *(const uint32_t *)b;
-  return (first > second) - (first < second);
-}
+CONIC_DEFINE_ORDER_OF(compare_place_numbers, uint32_t)
 
 static conic_status draw_chosen(hiding *h, size_t n_chosen) {
   conic_layers_gathering gathering = {

@@ -42,16 +42,12 @@ static float least_of(const float *values, int stride, int x_begin, int x_end, i
   return least;
 }
 
-static int lesser(int a, int b) {
-  return a < b ? a : b;
-}
-
 static void update_row(void *data, size_t i_row) {
   conic_horizon *h = data;
   int y = (int)i_row << CELL_BITS, cell = 1 << CELL_BITS;
   for (int i = 0; i < h->levels[0].width; i++)
-    h->levels[0].cells[i_row * (size_t)h->levels[0].width + (size_t)i] =
-        least_of(h->pixels, h->width, i * cell, lesser((i + 1) * cell, h->width), y, lesser(y + cell, h->height));
+    h->levels[0].cells[i_row * (size_t)h->levels[0].width + (size_t)i] = least_of(
+        h->pixels, h->width, i * cell, conic_least((i + 1) * cell, h->width), y, conic_least(y + cell, h->height));
 }
 
 void conic_horizon_update(conic_context *context, conic_horizon *horizon) {
@@ -60,8 +56,8 @@ void conic_horizon_update(conic_context *context, conic_horizon *horizon) {
     const int w = horizon->levels[i - 1].width, h = horizon->levels[i - 1].height;
     for (int y = 0; y < horizon->levels[i].height; y++)
       for (int x = 0; x < horizon->levels[i].width; x++)
-        horizon->levels[i].cells[(size_t)y * (size_t)horizon->levels[i].width + (size_t)x] =
-            least_of(horizon->levels[i - 1].cells, w, 2 * x, lesser(2 * x + 2, w), 2 * y, lesser(2 * y + 2, h));
+        horizon->levels[i].cells[(size_t)y * (size_t)horizon->levels[i].width + (size_t)x] = least_of(
+            horizon->levels[i - 1].cells, w, 2 * x, conic_least(2 * x + 2, w), 2 * y, conic_least(2 * y + 2, h));
   }
 }
 

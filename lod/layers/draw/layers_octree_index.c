@@ -1,5 +1,5 @@
 /* From a hierarchy's nodes to the entries that drawing knows, and reading its pages. */
-#include "core/base/radix.h"
+#include "core/base/real.h"
 #include "lod/layers/draw/layers_octree.h"
 
 /* A place of the index that is being made. */

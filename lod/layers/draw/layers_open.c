@@ -165,11 +165,8 @@ static conic_status take_name(conic_layers *layers, const char *name) {
   char file[CONIC_HIERARCHY_PATH_ROOM];
   if (!layers->is_remote && conic_hierarchy_find_file(name, file, sizeof file))
     name = file;
-  layers->name = conic_memory_allocate(layers->context, strlen(name) + 1, 1);
-  if (!layers->name)
-    return CONIC_ERROR_MEMORY;
-  memcpy(layers->name, name, strlen(name) + 1);
-  return CONIC_OK;
+  layers->name = conic_memory_copy_text(layers->context, name);
+  return layers->name ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
 
 conic_status conic_layers_open(conic_context *context, const char *name, const conic_layers_access *access,

@@ -228,7 +228,7 @@ const char *conic_layers_unpack(conic_layers_coder *coder, const unsigned char *
     if (i == 0)
       wrong = join_keys(coder, n, first_key, last_key, samples);
     else if (!is_passed_over)
-      wrong = conic_layers_join(schema, i, n, (const unsigned char *const *)&coder->streams[first], samples);
+      conic_layers_join(schema, i, n, (const unsigned char *const *)&coder->streams[first], samples);
   }
   return wrong;
 }

@@ -10,9 +10,9 @@
 void conic_layers_split(const conic_layers_schema *schema, uint32_t i, const unsigned char *samples, size_t n,
                         unsigned char *const *streams, size_t *n_bytes);
 
-/* And back. Null, or what is wrong with them. */
-const char *conic_layers_join(const conic_layers_schema *schema, uint32_t i, size_t n,
-                              const unsigned char *const *streams, unsigned char *samples);
+/* And back. */
+void conic_layers_join(const conic_layers_schema *schema, uint32_t i, size_t n, const unsigned char *const *streams,
+                       unsigned char *samples);
 
 /* How many clip lines there are, by the first stream of theirs; SIZE_MAX where it makes no sense. */
 size_t conic_layers_count_lines(const unsigned char *kinds, size_t n);

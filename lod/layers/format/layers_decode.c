@@ -39,11 +39,10 @@ static int file_has(const conic_layers_header *header, conic_layers_kind kind) {
   return conic_layers_schema_find(&header->schema, kind) >= 0;
 }
 
-/* Lays the arrays out. Returns how many bytes they take. */
-static size_t lay_out_cloud(const conic_layers_header *header, const conic_layers_entry *entry,
-                            const conic_layers_choice *choice, void *memory, conic_layers_cloud *cloud) {
+size_t conic_layers_cloud_place(const conic_layers_header *header, const conic_layers_entry *entry,
+                                const conic_layers_choice *choice, void *block, conic_layers_cloud *cloud) {
   size_t n = entry->n_samples;
-  array_places at = {memory, 0};
+  array_places at = {block, 0};
   int has_axes = file_has(header, CONIC_LAYERS_AXES);
   int has_colors = file_has(header, CONIC_LAYERS_COLOR) || (choice && choice->colored_by >= 0);
   memset(cloud, 0, sizeof *cloud);
@@ -70,12 +69,7 @@ static size_t lay_out_cloud(const conic_layers_header *header, const conic_layer
 size_t conic_layers_cloud_bytes(const conic_layers_header *header, const conic_layers_entry *entry,
                                 const conic_layers_choice *choice) {
   conic_layers_cloud cloud;
-  return lay_out_cloud(header, entry, choice, NULL, &cloud);
-}
-
-void conic_layers_cloud_place(const conic_layers_header *header, const conic_layers_entry *entry,
-                              const conic_layers_choice *choice, void *block, conic_layers_cloud *cloud) {
-  lay_out_cloud(header, entry, choice, block, cloud);
+  return conic_layers_cloud_place(header, entry, choice, NULL, &cloud);
 }
 
 /* Values are unpacked where something is made of them. */
@@ -222,14 +216,8 @@ const char *conic_layers_decode(conic_layers_decoder *decoder, const conic_layer
 
 /* The first sample whose key is not below `key`. */
 static size_t first_from(const conic_layers_cloud *cloud, uint64_t key) {
-  size_t low = 0, high = cloud->count;
-  while (low < high) {
-    size_t middle = low + (high - low) / 2;
-    if (cloud->keys[middle] < key)
-      low = middle + 1;
-    else
-      high = middle;
-  }
+  size_t low = 0;
+  CONIC_BISECT(low, cloud->count, cloud->keys[middle] < key);
   return low;
 }
 

@@ -45,11 +45,12 @@ typedef struct conic_layers_choice {
   uint8_t kept[CONIC_LAYERS_MOST_ATTRIBUTES]; /* their attributes */
 } conic_layers_choice;
 
-/* How many bytes a cloud's samples take; and laying them out in a block of so many, aligned to 64. */
+/* How many bytes a cloud's samples take; and lays them out in a block of so many, aligned to 64, and returns the same.
+ */
 size_t conic_layers_cloud_bytes(const conic_layers_header *header, const conic_layers_entry *entry,
                                 const conic_layers_choice *choice);
-void conic_layers_cloud_place(const conic_layers_header *header, const conic_layers_entry *entry,
-                              const conic_layers_choice *choice, void *block, conic_layers_cloud *cloud);
+size_t conic_layers_cloud_place(const conic_layers_header *header, const conic_layers_entry *entry,
+                                const conic_layers_choice *choice, void *block, conic_layers_cloud *cloud);
 
 /* Decodes clouds, one after the other; each thread has its own. */
 typedef struct conic_layers_decoder conic_layers_decoder;

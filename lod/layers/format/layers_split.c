@@ -51,8 +51,9 @@ static float layers_length_of(const conic_layers_attribute *attribute, unsigned 
   return conic_float_of_bits(bits < 0x7f000000 ? (uint32_t)bits : 0x7f000000);
 }
 
-static void split_colors(const conic_layers_schema *schema, const unsigned char *samples, size_t n,
-                         unsigned char *const *streams) {
+static void split_colors(const conic_layers_schema *schema, uint32_t i_attribute, const unsigned char *samples,
+                         size_t n, unsigned char *const *streams) {
+  (void)i_attribute;
   static const conic_layers_sample zero;
   const conic_layers_sample *before = &zero;
   for (size_t i = 0; i < n; i++) {
@@ -65,8 +66,9 @@ static void split_colors(const conic_layers_schema *schema, const unsigned char 
   }
 }
 
-static void rejoin_colors(const conic_layers_schema *schema, size_t n, const unsigned char *const *streams,
-                          unsigned char *samples) {
+static void rejoin_colors(const conic_layers_schema *schema, uint32_t i_attribute, size_t n,
+                          const unsigned char *const *streams, unsigned char *samples) {
+  (void)i_attribute;
   uint8_t red = 0, green = 0, blue = 0;
   for (size_t i = 0; i < n; i++) {
     conic_layers_sample *sample = conic_layers_sample_in(samples, schema->sample_bytes, i);
@@ -77,8 +79,9 @@ static void rejoin_colors(const conic_layers_schema *schema, size_t n, const uns
   }
 }
 
-static void split_normals(const conic_layers_schema *schema, const unsigned char *samples, size_t n,
-                          unsigned char *const *streams) {
+static void split_normals(const conic_layers_schema *schema, uint32_t i_attribute, const unsigned char *samples,
+                          size_t n, unsigned char *const *streams) {
+  (void)i_attribute;
   uint8_t before[2] = {0, 0};
   for (size_t i = 0; i < n; i++) {
     const conic_layers_sample *sample = conic_layers_sample_at(samples, schema->sample_bytes, i);
@@ -89,8 +92,9 @@ static void split_normals(const conic_layers_schema *schema, const unsigned char
   }
 }
 
-static void rejoin_normals(const conic_layers_schema *schema, size_t n, const unsigned char *const *streams,
-                           unsigned char *samples) {
+static void rejoin_normals(const conic_layers_schema *schema, uint32_t i_attribute, size_t n,
+                           const unsigned char *const *streams, unsigned char *samples) {
+  (void)i_attribute;
   uint8_t codes[2] = {0, 0};
   for (size_t i = 0; i < n; i++) {
     conic_layers_sample *sample = conic_layers_sample_in(samples, schema->sample_bytes, i);
@@ -122,8 +126,9 @@ float conic_layers_axis_length(float length) {
   return conic_float_of_bits((conic_bits_of_float(length) + (below >> 1) + 1) & ~below);
 }
 
-static void split_sizes(const conic_layers_schema *schema, const conic_layers_attribute *attribute,
-                        const unsigned char *samples, size_t n, unsigned char *const *streams) {
+static void split_sizes(const conic_layers_schema *schema, uint32_t i_attribute, const unsigned char *samples, size_t n,
+                        unsigned char *const *streams) {
+  const conic_layers_attribute *attribute = &schema->list[i_attribute];
   byte_planes p = {1, 0};
   for (size_t i = 0; i < n; i++) {
     float size = conic_float_of_bits((uint32_t)conic_layers_sample_at(samples, schema->sample_bytes, i)->size << 16);
@@ -131,8 +136,9 @@ static void split_sizes(const conic_layers_schema *schema, const conic_layers_at
   }
 }
 
-static void rejoin_sizes(const conic_layers_schema *schema, const conic_layers_attribute *attribute, size_t n,
+static void rejoin_sizes(const conic_layers_schema *schema, uint32_t i_attribute, size_t n,
                          const unsigned char *const *streams, unsigned char *samples) {
+  const conic_layers_attribute *attribute = &schema->list[i_attribute];
   byte_planes p = {1, 0};
   for (size_t i = 0; i < n; i++) {
     float size = layers_length_of(attribute, dropped_of_size(attribute), (uint32_t)get_folded(&p, i, streams));
@@ -186,8 +192,8 @@ size_t conic_layers_count_lines(const unsigned char *kinds, size_t n) {
   return n_lines;
 }
 
-static size_t split_lines(const conic_layers_schema *schema, uint32_t i_attribute, const unsigned char *samples,
-                          size_t n, unsigned char *const *streams) {
+static void split_lines(const conic_layers_schema *schema, uint32_t i_attribute, const unsigned char *samples, size_t n,
+                        unsigned char *const *streams) {
   byte_planes turn = {3, 0}, off = {3, 0};
   size_t at = 0;
   for (size_t i = 0; i < n; i++) {
@@ -199,7 +205,6 @@ static size_t split_lines(const conic_layers_schema *schema, uint32_t i_attribut
       put_folded(&off, lines.line[k][1], at, streams + 4);
     }
   }
-  return at;
 }
 
 static void rejoin_lines(const conic_layers_schema *schema, uint32_t i_attribute, size_t n,
@@ -257,54 +262,33 @@ static void rejoin_bare_numbers(const conic_layers_schema *schema, uint32_t i_at
   }
 }
 
+/* How an attribute becomes streams, and comes back; the kinds that are not here are bare numbers. */
+static const struct layers_way {
+  void (*split)(const conic_layers_schema *schema, uint32_t i_attribute, const unsigned char *samples, size_t n,
+                unsigned char *const *streams);
+  void (*rejoin)(const conic_layers_schema *schema, uint32_t i_attribute, size_t n, const unsigned char *const *streams,
+                 unsigned char *samples);
+} bare_numbers = {split_bare_numbers, rejoin_bare_numbers},
+  ways[CONIC_LAYERS_KINDS] = {[CONIC_LAYERS_NORMAL] = {split_normals, rejoin_normals},
+                              [CONIC_LAYERS_COLOR] = {split_colors, rejoin_colors},
+                              [CONIC_LAYERS_SIZE] = {split_sizes, rejoin_sizes},
+                              [CONIC_LAYERS_AXES] = {split_axes, rejoin_axes},
+                              [CONIC_LAYERS_CLIP] = {split_lines, rejoin_lines}};
+
+static const struct layers_way *way_of(const conic_layers_attribute *attribute) {
+  return ways[attribute->kind].split ? &ways[attribute->kind] : &bare_numbers;
+}
+
 void conic_layers_split(const conic_layers_schema *schema, uint32_t i, const unsigned char *samples, size_t n,
                         unsigned char *const *streams, size_t *n_bytes) {
   const conic_layers_attribute *attribute = &schema->list[i];
-  size_t n_lines = n;
-  switch (attribute->kind) {
-  case CONIC_LAYERS_NORMAL:
-    split_normals(schema, samples, n, streams);
-    break;
-  case CONIC_LAYERS_COLOR:
-    split_colors(schema, samples, n, streams);
-    break;
-  case CONIC_LAYERS_SIZE:
-    split_sizes(schema, attribute, samples, n, streams);
-    break;
-  case CONIC_LAYERS_AXES:
-    split_axes(schema, i, samples, n, streams);
-    break;
-  case CONIC_LAYERS_CLIP:
-    n_lines = split_lines(schema, i, samples, n, streams);
-    break;
-  default:
-    split_bare_numbers(schema, i, samples, n, streams);
-  }
+  way_of(attribute)->split(schema, i, samples, n, streams);
+  const size_t n_more = attribute->kind == CONIC_LAYERS_CLIP ? conic_layers_count_lines(streams[0], n) : n;
   for (unsigned k = 0; k < attribute->n_streams; k++)
-    n_bytes[k] = k ? n_lines : n;
+    n_bytes[k] = k ? n_more : n;
 }
 
-const char *conic_layers_join(const conic_layers_schema *schema, uint32_t i, size_t n,
-                              const unsigned char *const *streams, unsigned char *samples) {
-  const conic_layers_attribute *attribute = &schema->list[i];
-  switch (attribute->kind) {
-  case CONIC_LAYERS_NORMAL:
-    rejoin_normals(schema, n, streams, samples);
-    break;
-  case CONIC_LAYERS_COLOR:
-    rejoin_colors(schema, n, streams, samples);
-    break;
-  case CONIC_LAYERS_SIZE:
-    rejoin_sizes(schema, attribute, n, streams, samples);
-    break;
-  case CONIC_LAYERS_AXES:
-    rejoin_axes(schema, i, n, streams, samples);
-    break;
-  case CONIC_LAYERS_CLIP:
-    rejoin_lines(schema, i, n, streams, samples);
-    break;
-  default:
-    rejoin_bare_numbers(schema, i, n, streams, samples);
-  }
-  return NULL;
+void conic_layers_join(const conic_layers_schema *schema, uint32_t i, size_t n, const unsigned char *const *streams,
+                       unsigned char *samples) {
+  way_of(&schema->list[i])->rejoin(schema, i, n, streams, samples);
 }
