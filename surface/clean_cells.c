@@ -2,6 +2,7 @@
  * of its own, together with the points that reach into it; and the results are put back into the old order. In a team,
  * each process keeps the cells of its own points and those around them, and the first process gets all results. */
 
+#include "core/base/real.h"
 #include "core/base/team_runs.h"
 #include "core/splats/columns.h"
 #include "core/splats/splats_gather.h"

@@ -5,6 +5,7 @@
 
 #include "core/base/gaussian.h"
 #include "core/base/power.h"
+#include "core/base/real.h"
 #include "core/base/trigonometry.h"
 #include "core/image/compare.h"
 #include "core/image/image_common.h"

@@ -1,3 +1,4 @@
+#include "core/base/real.h"
 #include "core/scenes/scene_kind.h"
 
 /* found · n_wanted / n_found, rounded, computed as found minus its share of the surplus. The surplus is small where the

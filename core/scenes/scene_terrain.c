@@ -1,6 +1,7 @@
 #include "core/scenes/scene_terrain.h"
 
 #include "core/base/random.h"
+#include "core/base/real.h"
 #include "core/scenes/noise.h"
 #include "core/scenes/scene_kind.h"
 

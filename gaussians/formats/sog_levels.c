@@ -1,6 +1,7 @@
 /* lod-meta.json, streamed .sog (PlayCanvas): a tree whose leaves name, by level, rows of several .sog, each of which
  * has one level. All files of level 0, the finest, are read. */
 
+#include "core/base/real.h"
 #include "core/files/json_read.h"
 #include "gaussians/formats/gaussian_formats.h"
 

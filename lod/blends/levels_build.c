@@ -1,6 +1,7 @@
 #include "lod/blends/levels_build.h"
 
 #include "core/base/radix.h"
+#include "core/base/real.h"
 #include "core/files/file.h"
 #include "core/files/spool.h"
 #include "lod/blends/levels_tree.h"

@@ -1,6 +1,7 @@
 /* How far a cluster and its simpler triangles are from each other. What is found depends on no other cluster's, so that
  * clusters may be measured at the same time. */
 
+#include "core/base/real.h"
 #include "lod/clusters/cluster_simplifier.h"
 
 /* The least cosine between a face and what stands for it where it is fitted. */

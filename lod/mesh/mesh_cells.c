@@ -1,6 +1,7 @@
 #include "lod/mesh/mesh_cells.h"
 
 #include "core/base/radix.h"
+#include "core/base/real.h"
 #include "core/files/disk.h"
 #include "core/files/pile.h"
 #include "core/formats/model_read.h"

@@ -2,6 +2,7 @@
  * among the leaves, its own and those around, or, for large nodes, among small nodes and their errors. So nodes are
  * taken in classes by their size. What a class looks at belongs to the classes below. */
 
+#include "core/base/real.h"
 #include "core/base/team_runs.h"
 #include "core/base/vectors.h"
 #include "lod/octree/octree_loops.h"

@@ -1,6 +1,8 @@
 /* Cells of pixels, and the Gaussians that each may show. Nothing here knows of the renderer's tiles. */
 #include "oracle/gaussians/oracle_cells.h"
 
+#include "core/base/real.h"
+
 enum { PLACE_RUN = 1024, CELL_EDGE = 32 };
 
 /* Pixels of the picture of samples, first and last; none where last is below first. */

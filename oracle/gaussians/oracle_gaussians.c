@@ -1,5 +1,6 @@
 /* A picture of Gaussians by the oracle: every pixel by itself, over all of them. */
 
+#include "core/base/real.h"
 #include "core/image/view_arguments.h"
 #include "oracle/gaussians/oracle_gaussian.h"
 #include "oracle/gaussians/oracle_lens.h"

@@ -76,10 +76,9 @@ typedef struct oracle_camera_gradient {
 
 /* A Gaussian's parameters. */
 typedef struct oracle_parameters {
-  double mean[3], scale[3], rotation[4], turn[4], opacity,
-      sh[3 * (CONIC_MAX_SH_DEGREE + 1) * (CONIC_MAX_SH_DEGREE + 1)];
+  double mean[3], scale[3], rotation[4], opacity, sh[3 * (CONIC_MAX_SH_DEGREE + 1) * (CONIC_MAX_SH_DEGREE + 1)];
+  double turn[4];  /* by the quaternion of unit length, as if its numbers were free */
   uint32_t doubts; /* clamps that roundings of the model may pass */
-                   /* turn: by the quaternion of unit length, as if its numbers were free */
 } oracle_parameters;
 
 /* The inverse of the camera's rotation, and −R⁻¹t. */
@@ -87,8 +86,8 @@ typedef struct oracle_eye {
   double inverse[3][3], place[3];
 } oracle_eye;
 
-/* From what it is at the pixels to its parameters; the camera's part is added. `model` may be null: no doubts; and
- * `form`: the Gaussian's own. */
+/* Carries derivatives by what Gaussian i is at the pixels to those by its parameters, and adds the camera's part.
+ * Without `model` no doubts are set; without `form` the Gaussian's own is taken. */
 void conic_oracle_gradient_chain(const oracle_gaussian_view *view, const oracle_eye *eye, const conic_gaussians *set,
                                  size_t i, const conic_float_model *model, const double *form, const double *sums,
                                  oracle_parameters *to, oracle_camera_gradient *camera);

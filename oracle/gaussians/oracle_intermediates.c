@@ -1,6 +1,8 @@
 /* All Gaussians' intermediates, the lists of tiles, and the transmittances before each. */
 #include "oracle/gaussians/oracle_intermediates.h"
 
+#include "core/base/real.h"
+
 CONIC_DEFINE_NAMES(conic_intermediate_name, conic_intermediate, CONIC_N_INTERMEDIATES, "radii", "means2d", "depths",
                    "covars2d", "conics", "tile_boxes", "tiles_per_gauss", "opacities", "colors", "transmittances")
 CONIC_DEFINE_NAMES(conic_gaussian_stage_name, conic_gaussian_stage, CONIC_N_GAUSSIAN_STAGES, "projection", "sort",

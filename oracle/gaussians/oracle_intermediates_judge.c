@@ -354,7 +354,7 @@ static conic_status judge_rows(intermediates_judging *j) {
 
 /* --- the picture --- */
 
-/* Where the few worst pixels are wrong in alpha alone, or in colours alone, the other has its first wrong one. */
+/* Shows the first wrong pixel of these channels: the few worst pixels may be wrong in other channels alone. */
 static void take_first_fault(const uint32_t *faults, const float *rgba, unsigned channels, conic_judged_array *to) {
   size_t pixel = 0;
   int channel = 0;

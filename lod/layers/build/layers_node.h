@@ -2,6 +2,7 @@
  * stand for all of its place, and what is left of a child's samples is the child's cloud (docs/reference/layers.md). */
 #pragma once
 
+#include "core/base/real.h"
 #include "core/files/pile.h"
 #include "lod/layers/build/layers_kept.h"
 #include "lod/layers/build/layers_thin.h"

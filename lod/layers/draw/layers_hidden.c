@@ -1,4 +1,5 @@
 /* Occlusion culling: which places of a cut are hidden by others. No bit of the picture changes by it. */
+#include "core/base/real.h"
 #include "lod/layers/draw/layers_gather.h"
 
 #include "lod/layers/draw/layers_horizon.h"

@@ -2,6 +2,7 @@
 
 #include "core/base/byte_order.h"
 #include "core/base/color.h"
+#include "core/base/real.h"
 #include "core/splats/coordinate.h"
 #include "lod/layers/format/layers_code.h"
 #include "lod/layers/format/layers_key.h"
