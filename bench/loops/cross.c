@@ -1,8 +1,8 @@
 #include "bench/loops/cross.h"
 
 /* A family more is a line here. */
-static int (*const families[])(cross *c) = {cli_cross_splats, cli_cross_triangles, cli_cross_texture, cli_cross_surface,
-                                            cli_cross_octree};
+static int (*const families[])(cross *c) = {cli_cross_splats,  cli_cross_triangles, cli_cross_texture,
+                                            cli_cross_surface, cli_cross_octree,    cli_cross_neighbours};
 
 int cli_cross_all(uint64_t seed, int n_timed) {
   const int is_bench = n_timed > 0;
@@ -19,6 +19,7 @@ int cli_cross_all(uint64_t seed, int n_timed) {
       conic_raster_loops_init(&tables->raster, tables->isa);
       conic_surface_loops_init(&tables->surface, tables->isa);
       conic_octree_loops_init(&tables->octree, tables->isa);
+      conic_neighbour_loops_init(&tables->neighbours, tables->isa);
       c.n_tables++;
     }
     if (!is_bench)

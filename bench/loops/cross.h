@@ -3,6 +3,7 @@
 #pragma once
 
 #include "bench/loops/cross_all.h"
+#include "core/estimate/neighbour_loops.h"
 #include "lod/octree/octree_loops.h"
 #include "raster/loops/raster_loops.h"
 #include "surface/loops/surface_loops.h"
@@ -15,6 +16,7 @@ typedef struct cross_tables {
   conic_raster_loops raster;
   conic_surface_loops surface;
   conic_octree_loops octree;
+  conic_neighbour_loops neighbours;
 } cross_tables;
 
 /* One run: compares, or, with is_bench, compares a little and times. */
@@ -32,6 +34,7 @@ int cli_cross_triangles(cross *c);
 int cli_cross_texture(cross *c);
 int cli_cross_surface(cross *c);
 int cli_cross_octree(cross *c);
+int cli_cross_neighbours(cross *c);
 
 enum { CROSS_GUARD = 256, CROSS_PATTERN = 0xa5, CROSS_MOST_ARENAS = 32 };
 

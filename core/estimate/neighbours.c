@@ -37,8 +37,7 @@ static int lies_before(const conic_neighbours *tree, size_t a, size_t b) {
  * only the nearest are kept. */
 enum {
   MOST_BESIDE = CONIC_MOST_NEAREST / 2 + 4,
-  MOST_CANDIDATES = CONIC_MOST_NEAREST + MOST_BESIDE + CONIC_LEAF_SLOTS,
-  BLOCK_KEYS = 16
+  MOST_CANDIDATES = CONIC_MOST_NEAREST + MOST_BESIDE + CONIC_LEAF_SLOTS
 };
 
 typedef struct neighbour_search {
@@ -48,28 +47,9 @@ typedef struct neighbour_search {
   size_t k, n;   /* candidates */
   double limit2; /* farther slots are not wanted: first the caller's limit, later the distance of the last slot that was
                     kept */
-  double distances2[MOST_CANDIDATES];
-  uint32_t slots[MOST_CANDIDATES];
+  double distances2[CONIC_FOUND_ROOM];
+  uint32_t slots[CONIC_FOUND_ROOM];
 } neighbour_search;
-
-/* The squared distances as floats, in whole blocks, and how many others each exceeds. */
-typedef float key_four __attribute__((vector_size(16)));
-typedef int32_t place_four __attribute__((vector_size(16)));
-typedef struct candidate_order {
-  float keys[MOST_CANDIDATES + BLOCK_KEYS];
-  int32_t places[MOST_CANDIDATES + BLOCK_KEYS];
-} candidate_order;
-
-/* Compares each with each: for so few, that is quicker than sorting with its unpredictable comparisons. */
-static void rank_block(candidate_order *order, size_t begin, size_t n) {
-  key_four keys[BLOCK_KEYS / 4];
-  place_four places[BLOCK_KEYS / 4] = {{0}};
-  memcpy(keys, order->keys + begin, sizeof keys);
-  for (size_t j = 0; j < n; j++)
-    for (int part = 0; part < BLOCK_KEYS / 4; part++)
-      places[part] -= order->keys[j] < keys[part];
-  memcpy(order->places + begin, places, sizeof places);
-}
 
 static int is_candidate_nearer(const neighbour_search *s, size_t a, size_t b) {
   return s->distances2[a] < s->distances2[b] ||
@@ -77,19 +57,24 @@ static int is_candidate_nearer(const neighbour_search *s, size_t a, size_t b) {
 }
 
 /* NOLINTBEGIN(clang-analyzer-core.*): it does not see what memcpy and vectors write */
-/* Lists the candidates, nearest first. Candidates with the same key share a place, from which on they are put in
- * order. */
+/* Lists the candidates, nearest first, by their squared distances as floats. Candidates with the same key share a
+ * place, from which on they are put in order. */
 static void sort_candidates(const neighbour_search *s, uint8_t sorted[MOST_CANDIDATES]) {
-  candidate_order order;
+  float keys[MOST_CANDIDATES + CONIC_KEYS_AT_ONCE];
+  uint32_t places[MOST_CANDIDATES + CONIC_KEYS_AT_ONCE];
   uint8_t n_at[MOST_CANDIDATES] = {0};
+  size_t sum = 0;
   for (size_t i = 0; i < s->n; i++)
-    order.keys[i] = (float)s->distances2[i];
-  for (size_t i = s->n; i % BLOCK_KEYS != 0; i++)
-    order.keys[i] = 0.0f; /* any number */
-  for (size_t begin = 0; begin < s->n; begin += BLOCK_KEYS)
-    rank_block(&order, begin, s->n);
+    keys[i] = (float)s->distances2[i];
+  s->tree->loops.rank(keys, s->n, places);
   for (size_t i = 0; i < s->n; i++) {
-    size_t first = (size_t)order.places[i], place = first + n_at[first]++;
+    sorted[places[i]] = (uint8_t)i;
+    sum += places[i];
+  }
+  if (sum == s->n * (s->n - 1) / 2) /* each has a place of its own */
+    return;
+  for (size_t i = 0; i < s->n; i++) {
+    size_t first = places[i], place = first + n_at[first]++;
     for (; place > first && is_candidate_nearer(s, i, sorted[place - 1]); place--)
       sorted[place] = sorted[place - 1];
     sorted[place] = (uint8_t)i;
@@ -179,110 +164,119 @@ size_t conic_neighbours_nearest(const conic_neighbours *tree, const double query
 
 /* --- slots of one leaf after the other --- */
 
-/* The reach of the list, as the square of a multiple of the distance to the last neighbour that one slot has. */
-static const double AROUND_REACH2 = 1.7 * 1.7;
+/* How far the leaves around reach, in distances to the last neighbour of the slot before; a bound beyond the greatest
+ * is of a slot far from it. */
+static const double AROUND_REACH = 2.0, GREATEST_REACH = 2.5;
 
-/* Lists the leaves within reach of a leaf's box. Rounding is monotonic: the distance of two boxes is not above that of
- * a point in one of them from the other. What does not fit leaves none listed. */
-static void list_around(const conic_neighbours *tree, size_t i_leaf, double reach2, conic_neighbours_around *around) {
-  size_t stack[MAX_DEPTH + 2];
-  int n_stack = 0;
-  const float *own = tree->boxes[tree->n_leaves - 1 + i_leaf];
-  around->begin = conic_neighbours_leaf_begin(tree, i_leaf);
-  around->end = conic_neighbours_leaf_begin(tree, i_leaf + 1);
-  around->reach2 = reach2;
-  around->n = 0;
-  stack[n_stack++] = 0;
-  while (n_stack > 0) {
-    size_t i_node = stack[--n_stack];
-    const float *box = tree->boxes[i_node];
-    double distance2 = 0.0;
-    for (int axis = 0; axis < 3; axis++) {
-      double above = (double)box[axis] - (double)own[3 + axis], below = (double)own[axis] - (double)box[3 + axis];
-      double outside = above > below ? above : below;
-      outside = outside > 0.0 ? outside : 0.0;
-      distance2 += outside * outside;
-    }
-    if (!(distance2 <= reach2))
-      continue;
-    if (i_node < tree->n_leaves - 1) {
-      stack[n_stack++] = 2 * i_node + 2;
-      stack[n_stack++] = 2 * i_node + 1;
-      continue;
-    }
-    if (around->n == CONIC_MOST_AROUND) {
-      around->reach2 = -1.0;
+/* A sum of distances is at least so near to the true one. */
+static const double ROUNDED_UP = 1.0 + 1e-12;
+
+static void append_around(const conic_neighbours *tree, size_t i_leaf, const float *box, conic_near_leaves *near) {
+  size_t begin = conic_neighbours_leaf_begin(tree, i_leaf), end = conic_neighbours_leaf_begin(tree, i_leaf + 1);
+  size_t room = near->n * CONIC_LEAF_ROOM, n = end - begin;
+  near->first[near->n] = (uint32_t)begin;
+  for (int axis = 0; axis < 3; axis++) {
+    near->low[axis][near->n] = box[axis];
+    near->high[axis][near->n] = box[3 + axis];
+    memcpy(near->place[axis] + room, tree->position[axis] + begin, CONIC_LEAF_ROOM * sizeof(float)); /* and others */
+  }
+  for (; n < CONIC_LEAF_ROOM; n++)
+    near->place[0][room + n] = NAN;
+  near->n++;
+}
+
+/* The squared distance between two boxes. Rounding is monotonic: it is not above that of a point in one of them from
+ * the other. */
+static inline double boxes_apart2(const float a[6], const float b[6]) {
+  double distance2 = 0.0;
+  for (int axis = 0; axis < 3; axis++) {
+    double above = (double)a[axis] - (double)b[3 + axis], below = (double)b[axis] - (double)a[3 + axis];
+    double outside = above > below ? above : below;
+    outside = outside > 0.0 ? outside : 0.0;
+    distance2 += outside * outside;
+  }
+  return distance2;
+}
+
+/* Puts the leaves within reach of a slot's two leaves side by side. If there are too many, the reach is none. */
+static void list_around(const conic_neighbours *tree, size_t slot, double reach, conic_neighbours_around *around) {
+  conic_near_leaves *near = &around->near;
+  size_t stack[MAX_DEPTH + 2], n_above = tree->n_leaves - 1, n = 0;
+  size_t i_leaf = (size_t)((uint64_t)slot * (uint64_t)tree->n_leaves / (uint64_t)tree->n_slots);
+  i_leaf += conic_neighbours_leaf_begin(tree, i_leaf + 1) <= slot;
+  size_t i_both = tree->n_leaves > 1 ? (n_above + i_leaf - 1) / 2 : 0;
+  const float *own = tree->boxes[i_both];
+  around->begin = conic_neighbours_leaf_begin(tree, i_leaf & ~(size_t)1);
+  around->end = conic_neighbours_leaf_begin(tree, tree->n_leaves > 1 ? (i_leaf | 1) + 1 : 1);
+  around->reach2 = -1.0;
+  near->n = 0;
+  stack[n++] = 0;
+  while (n > 0) {
+    size_t i_node = stack[--n], first = 2 * i_node + 1;
+    if (i_node < n_above) {
+      stack[n] = first + 1;
+      n += boxes_apart2(tree->boxes[first + 1], own) <= reach * reach;
+      stack[n] = first;
+      n += boxes_apart2(tree->boxes[first], own) <= reach * reach;
+    } else if (near->n < CONIC_MOST_NEAR_LEAVES)
+      append_around(tree, i_node - n_above, tree->boxes[i_node], near);
+    else
       return;
-    }
-    memcpy(around->boxes[around->n], box, sizeof around->boxes[0]);
-    around->leaves[around->n++] = (uint32_t)(i_node - (tree->n_leaves - 1));
   }
+  for (size_t i = near->n; i < near->n + CONIC_NEAR_LEAVES_ROOM - CONIC_MOST_NEAR_LEAVES; i++)
+    for (int axis = 0; axis < 3; axis++)
+      near->low[axis][i] = near->high[axis][i] = HUGE_VALF; /* near nothing */
+  around->reach2 = reach * reach;
 }
 
-static void search_around(neighbour_search *s, const conic_neighbours_around *around) {
-  uint32_t leaves[CONIC_MOST_AROUND + 1];
-  double near2[CONIC_MOST_AROUND + 1];
-  size_t n = 0;
-  for (size_t i = 0; i < around->n; i += 2) {
-    size_t first = i + 1 < around->n || i == 0 ? i : i - 1; /* the last pair may have one again */
-    const box_pair both = box_distances2((const float(*)[6])around->boxes + first, s->query);
-    for (size_t k = i - first; k < 2 && first + k < around->n; k++) { /* of one leaf, the other box is none */
-      leaves[n] = around->leaves[first + k];
-      near2[n] = both[k];
-      n += both[k] <= s->limit2;
-    }
-  }
-  for (size_t i = 0; i < n; i++)
-    if (near2[i] <= s->limit2) /* NOLINT(clang-analyzer-core.UndefinedBinaryOperatorResult): i < n */
-      search_leaf(s, leaves[i]);
+/* Returns also where many are as near. */
+static size_t search_around(const conic_neighbours *tree, const conic_near_leaves *near, const double query[3],
+                            uint32_t except, size_t k, double limit2, uint32_t *slots, double *distances2) {
+  neighbour_search s;
+  begin_search(&s, tree, query, except, k, limit2);
+  s.n = tree->loops.find(near, query, limit2, except, s.slots, s.distances2);
+  return s.n <= MOST_CANDIDATES ? take_candidates(&s, slots, distances2) : 0;
 }
 
-/* A bound of the squared distance from a slot to its k-th neighbour, by the nearest slot whose k neighbours are known:
- * the distance to the farthest of these, with the slot itself replaced by that one. */
-static double bound_around(const conic_neighbours *tree, const conic_neighbours_around *around, size_t slot,
-                           const double query[3], size_t k) {
-  double bound2 = 0.0, least2 = HUGE_VAL;
-  size_t best = around->n_known;
-  for (size_t i = 0; i < around->n_known; i++) {
-    double distance2 = conic_neighbours_distance2(tree, around->known[i], query);
-    best = distance2 < least2 || i == 0 ? i : best;
+/* A bound of the distance from a place to its k-th neighbour, by the nearest of the last slots and how far its k
+ * neighbours reach: with the slot itself replaced by that one, they are as many about the slot. */
+static double bound_around(const conic_neighbours_around *around, const double query[3], double *reach) {
+  double least2 = HUGE_VAL;
+  size_t n = around->n_known < CONIC_LAST_KNOWN ? around->n_known : CONIC_LAST_KNOWN;
+  *reach = HUGE_VAL;
+  for (size_t i = 0; i < n; i++) {
+    const double *place = around->known[i];
+    double x = place[0] - query[0], y = place[1] - query[1], z = place[2] - query[2];
+    double distance2 = x * x + y * y + z * z;
+    *reach = distance2 < least2 ? around->reach[i] : *reach;
     least2 = distance2 < least2 ? distance2 : least2;
   }
-  if (best == around->n_known)
-    return HUGE_VAL;
-  for (size_t i = 0; i < k; i++) {
-    size_t other = around->nearest[best][i] == slot ? around->known[best] : around->nearest[best][i];
-    double distance2 = conic_neighbours_distance2(tree, other, query);
-    bound2 = distance2 > bound2 ? distance2 : bound2;
-  }
-  return bound2;
+  return (sqrt(least2) + *reach) * ROUNDED_UP;
 }
 
 size_t conic_neighbours_of_slot(const conic_neighbours *tree, size_t slot, size_t k, conic_neighbours_around *around,
                                 uint32_t *slots, double *distances2) {
   const double query[3] = {(double)tree->position[0][slot], (double)tree->position[1][slot],
                            (double)tree->position[2][slot]};
-  double limit2 = bound_around(tree, around, slot, query, k);
+  double reach, limit = bound_around(around, query, &reach), limit2 = limit * limit;
   int is_same = slot >= around->begin && slot < around->end;
-  size_t n;
-  if (is_same && limit2 <= around->reach2) {
-    neighbour_search s;
-    begin_search(&s, tree, query, (uint32_t)slot, k, limit2);
-    search_around(&s, around);
-    n = take_candidates(&s, slots, distances2);
-  } else
+  size_t n = 0;
+  if (!is_same && limit < GREATEST_REACH * reach) {
+    reach = limit > AROUND_REACH * reach ? limit : AROUND_REACH * reach;
+    list_around(tree, slot, reach, around);
+    is_same = 1;
+  }
+  if (is_same && limit2 <= around->reach2)
+    n = search_around(tree, &around->near, query, (uint32_t)slot, k, limit2, slots, distances2);
+  if (n == 0)
     n = conic_neighbours_nearest(tree, query, (uint32_t)slot, k, limit2, slots, distances2);
   if (n < k || k == 0)
     return n;
-  if (!is_same) {
-    size_t i_leaf = (size_t)((uint64_t)slot * (uint64_t)tree->n_leaves / (uint64_t)tree->n_slots);
-    i_leaf += conic_neighbours_leaf_begin(tree, i_leaf + 1) <= slot;
-    list_around(tree, i_leaf, AROUND_REACH2 * distances2[n - 1], around);
-    around->n_known = 0;
-  }
-  if (around->n_known < CONIC_LEAF_SLOTS) {
-    around->known[around->n_known] = (uint32_t)slot;
-    memcpy(around->nearest[around->n_known++], slots, k * sizeof *slots);
-  }
+  reach = sqrt(distances2[n - 1]);
+  if (!is_same)
+    list_around(tree, slot, AROUND_REACH * reach, around);
+  size_t last = around->n_known++ % CONIC_LAST_KNOWN;
+  memcpy(around->known[last], query, sizeof query);
+  around->reach[last] = reach;
   return n;
 }

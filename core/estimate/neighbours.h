@@ -5,21 +5,19 @@
  * finite have none. The order and every answer depend only on the positions and indices. */
 #pragma once
 
-#include "core/base/base.h"
+#include "core/estimate/neighbour_loops.h"
 
 #define CONIC_NO_SLOT UINT32_MAX
-
-/* The most slots of a leaf. */
-#define CONIC_LEAF_SLOTS 12
 
 typedef struct conic_neighbours {
   size_t n_points, n_slots;
   size_t n_not_finite, n_duplicates; /* n_points = n_slots + both */
-  float *position[3];                /* by slot */
+  float *position[3];                /* by slot; behind them is a leaf's room */
   uint32_t *point_of_slot;
   uint32_t *slot_of_point; /* CONIC_NO_SLOT for a point that is not finite */
   size_t n_leaves;         /* a power of two; node i has the children 2i + 1 and 2i + 2, the leaves come last */
   float (*boxes)[6];       /* of each node: least x, y, z, greatest x, y, z */
+  conic_neighbour_loops loops;
 } conic_neighbours;
 
 /* Builds the tree over positions[axis][0 … count). On success the caller releases *tree; on failure it is empty.
@@ -37,15 +35,16 @@ enum { CONIC_MOST_NEAREST = 64 };
 size_t conic_neighbours_nearest(const conic_neighbours *tree, const double query[3], uint32_t except, size_t k,
                                 double limit2, uint32_t *slots, double *distances2);
 
-/* The leaves around one leaf, found once for all of its slots, and what is known of these. Zero is none. */
-enum { CONIC_MOST_AROUND = 64 };
+/* The leaves around two leaves, side by side, found once for all of their slots; and how far the last slots' neighbours
+ * reach. Zero is none. */
+enum { CONIC_LAST_KNOWN = 16 };
 typedef struct conic_neighbours_around {
-  size_t begin, end; /* the leaf's slots */
-  double reach2;     /* leaves no farther from the leaf's box than that, squared, are listed */
-  size_t n, n_known;
-  uint32_t leaves[CONIC_MOST_AROUND];
-  float boxes[CONIC_MOST_AROUND][6]; /* of each */
-  uint32_t known[CONIC_LEAF_SLOTS], nearest[CONIC_LEAF_SLOTS][CONIC_MOST_NEAREST];
+  size_t begin, end; /* the two leaves' slots */
+  double reach2;     /* leaves no farther from their box than that, squared, are here */
+  conic_near_leaves near;
+  size_t n_known;
+  double known[CONIC_LAST_KNOWN][3],
+      reach[CONIC_LAST_KNOWN]; /* of the last slots: place, distance of the k-th neighbour */
 } conic_neighbours_around;
 
 /* The k nearest of a slot, itself excepted, as conic_neighbours_nearest finds them. That is quicker where slots follow

@@ -41,15 +41,18 @@ static conic_status gather_points(conic_context *context, const float *const pos
 }
 
 /* A strict order of the records: by the axis, then by the next ones, so that splits are unique. */
-static int comes_before(const point_record *a, const point_record *b, int axis) {
-  if (a->position[axis] != b->position[axis])
-    return a->position[axis] < b->position[axis];
+static int comes_before_by_next(const point_record *a, const point_record *b, int axis) {
   for (int step = 1; step < 3; step++) {
     int other = (axis + step) % 3;
     if (a->position[other] != b->position[other])
       return a->position[other] < b->position[other];
   }
   return 0;
+}
+
+static inline int comes_before(const point_record *a, const point_record *b, int axis) {
+  int is_before = a->position[axis] < b->position[axis];
+  return a->position[axis] == b->position[axis] ? comes_before_by_next(a, b, axis) : is_before;
 }
 
 static point_record median_of_three(const point_record *a, const point_record *b, const point_record *c, int axis) {
@@ -59,6 +62,33 @@ static point_record median_of_three(const point_record *a, const point_record *b
     b = swap;
   }
   return comes_before(b, c, axis) ? *b : comes_before(a, c, axis) ? *c : *a;
+}
+
+static void swap_records(point_record *a, point_record *b) {
+  point_record swap = *a;
+  *a = *b;
+  *b = swap;
+}
+
+/* The exchanges of Hoare's split, but for whole blocks at both ends what is on the wrong side is noted first: that
+ * branches on no comparison, which could not be foreseen. What is left between is for less than two blocks. */
+enum { MOST_IN_BLOCK = 64, FEWEST_IN_BLOCK = 4 };
+static void split_blocks(point_record *records, ptrdiff_t *low, ptrdiff_t *high, const point_record *pivot, int axis) {
+  ptrdiff_t n;
+  while ((n = (*high - *low + 1) / 2) >= FEWEST_IN_BLOCK) {
+    uint8_t lefts[MOST_IN_BLOCK], rights[MOST_IN_BLOCK];
+    ptrdiff_t n_lefts = 0, n_rights = 0, k = 0;
+    n = n < MOST_IN_BLOCK ? n : MOST_IN_BLOCK;
+    for (ptrdiff_t i = 0; i < n; i++) {
+      lefts[n_lefts] = rights[n_rights] = (uint8_t)i;
+      n_lefts += !comes_before(&records[*low + i], pivot, axis);
+      n_rights += !comes_before(pivot, &records[*high - i], axis);
+    }
+    for (; k < n_lefts && k < n_rights; k++)
+      swap_records(&records[*low + lefts[k]], &records[*high - rights[k]]);
+    *low += k < n_lefts ? lefts[k] : n;
+    *high -= k < n_rights ? rights[k] : n;
+  }
 }
 
 /* Reorders so that the first n_left records come before all others along the axis (Hoare's FIND). Pivots come from
@@ -73,16 +103,14 @@ static void partition(point_record *records, size_t n, size_t n_left, int axis) 
         median_of_three(&from[(draw & 0xFFFFF) * span >> 20], &from[(draw >> 20 & 0xFFFFF) * span >> 20],
                         &from[(draw >> 40 & 0xFFFFF) * span >> 20], axis);
     ptrdiff_t low = begin, high = last;
+    split_blocks(records, &low, &high, &pivot, axis);
     while (low <= high) {
       while (comes_before(&records[low], &pivot, axis))
         low++;
       while (comes_before(&pivot, &records[high], axis))
         high--;
-      if (low <= high) {
-        point_record swap = records[low];
-        records[low++] = records[high];
-        records[high--] = swap;
-      }
+      if (low <= high)
+        swap_records(&records[low++], &records[high--]);
     }
     if (high < wanted)
       begin = low;
@@ -181,7 +209,7 @@ static conic_status allocate_tree(conic_context *context, conic_neighbours *tree
   for (tree->n_leaves = 1; tree->n_leaves * CONIC_LEAF_SLOTS < tree->n_slots;)
     tree->n_leaves *= 2;
   for (int axis = 0; axis < 3; axis++)
-    tree->position[axis] = conic_memory_allocate(context, tree->n_slots, sizeof(float));
+    tree->position[axis] = conic_memory_allocate(context, tree->n_slots + CONIC_LEAF_ROOM, sizeof(float));
   tree->point_of_slot = conic_memory_allocate(context, tree->n_slots, sizeof *tree->point_of_slot);
   tree->boxes = conic_memory_allocate(context, 2 * tree->n_leaves - 1, sizeof *tree->boxes);
   return tree->position[0] && tree->position[1] && tree->position[2] && tree->point_of_slot && tree->boxes
@@ -209,9 +237,14 @@ static conic_status build_with(conic_context *context, const float *const positi
 
 conic_status conic_neighbours_build(conic_context *context, const float *const positions[3], size_t count,
                                     conic_neighbours *tree) {
+  conic_isa isa;
   memset(tree, 0, sizeof *tree);
   if (count > UINT32_MAX - 1)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%zu points are too many to find neighbours for", count);
+  conic_status chosen = conic_isa_choose(context, CONIC_ISA_AUTO, &isa);
+  if (chosen != CONIC_OK)
+    return chosen;
+  conic_neighbour_loops_init(&tree->loops, isa);
   tree->n_points = count;
   tree->slot_of_point = conic_memory_allocate(context, count, sizeof *tree->slot_of_point);
   point_record *records = conic_memory_allocate(context, count, sizeof *records);

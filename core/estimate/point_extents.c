@@ -49,21 +49,6 @@ typedef struct tangent_origin {
   double position[3], normal[3];
 } tangent_origin;
 
-/* Finds the vector to a neighbour, and whether the neighbour is on the same surface. */
-static int view_neighbour(const tangent_origin *p, uint32_t slot, double d[3], double *distance2) {
-  const float *normal = p->neighbourhood->normals[slot];
-  double cosine = 0.0, height = 0.0;
-  conic_neighbourhood_position(p->neighbourhood, slot, d);
-  *distance2 = 0.0;
-  for (int axis = 0; axis < 3; axis++) {
-    d[axis] -= p->position[axis];
-    *distance2 += d[axis] * d[axis];
-    cosine += p->normal[axis] * (double)normal[axis];
-    height += p->normal[axis] * d[axis];
-  }
-  return cosine >= LEAST_COSINE && height * height <= GREATEST_SLOPE * GREATEST_SLOPE * *distance2;
-}
-
 static tangent_origin place_at(const conic_neighbourhood *neighbourhood, size_t slot) {
   tangent_origin p = {neighbourhood, conic_neighbourhood_of(neighbourhood, slot), {0.0}, {0.0}};
   conic_neighbourhood_position(neighbourhood, slot, p.position);
@@ -72,22 +57,53 @@ static tangent_origin place_at(const conic_neighbourhood *neighbourhood, size_t 
   return p;
 }
 
+/* The neighbours as the origin sees them: the vectors to them, and whether they are on the same surface. */
+typedef struct neighbour_views {
+  double d[3][CONIC_MAX_NEIGHBOURS], normal[3][CONIC_MAX_NEIGHBOURS];
+  double distances2[CONIC_MAX_NEIGHBOURS], heights[CONIC_MAX_NEIGHBOURS];
+  int64_t are_same[CONIC_MAX_NEIGHBOURS];
+} neighbour_views;
+
+static void view_neighbours(const tangent_origin *p, neighbour_views *views) {
+  const conic_neighbourhood *neighbourhood = p->neighbourhood;
+  const size_t n = neighbourhood->n_neighbours;
+  const tangent_origin own = *p;
+  neighbour_views *restrict v = views;
+  for (size_t i = 0; i < n; i++)
+    for (int axis = 0; axis < 3; axis++) {
+      v->d[axis][i] = (double)neighbourhood->tree.position[axis][own.list[i]];
+      v->normal[axis][i] = (double)neighbourhood->normals[own.list[i]][axis];
+    }
+  for (size_t i = 0; i < n; i++) {
+    double x = v->d[0][i] - own.position[0], y = v->d[1][i] - own.position[1], z = v->d[2][i] - own.position[2];
+    double distance2 = x * x + y * y + z * z;
+    double height = own.normal[0] * x + own.normal[1] * y + own.normal[2] * z;
+    double cosine = own.normal[0] * v->normal[0][i] + own.normal[1] * v->normal[1][i] + own.normal[2] * v->normal[2][i];
+    v->d[0][i] = x;
+    v->d[1][i] = y;
+    v->d[2][i] = z;
+    v->distances2[i] = distance2;
+    v->heights[i] = height;
+    v->are_same[i] = (cosine >= LEAST_COSINE) & (height * height <= GREATEST_SLOPE * GREATEST_SLOPE * distance2);
+  }
+}
+
 /* The side of a square with the area of one sample: n samples lie in a disc that reaches to the n-th neighbour. The
  * denser estimate counts, from the nearest few or from all: a cluster's edge must not make it sparse. */
 static double spacing_of(const conic_neighbourhood *neighbourhood, size_t slot) {
   tangent_origin p = place_at(neighbourhood, slot);
-  double d[3], distance2 = 0.0, few = HUGE_VAL, all = HUGE_VAL;
+  neighbour_views views;
+  double few = HUGE_VAL, all = HUGE_VAL;
   size_t n = 0;
+  view_neighbours(&p, &views);
   for (size_t i = 0; i < neighbourhood->n_neighbours; i++)
-    if (view_neighbour(&p, p.list[i], d, &distance2)) {
+    if (views.are_same[i]) {
       n++;
-      all = distance2 / (double)n;
+      all = views.distances2[i] / (double)n;
       few = n <= NEAREST_FEW ? all : few;
     }
-  if (n == 0) {
-    view_neighbour(&p, p.list[0], d, &distance2);
-    all = distance2;
-  }
+  if (n == 0)
+    all = views.distances2[0];
   return sqrt(PI * (few < all ? few : all));
 }
 
@@ -111,45 +127,58 @@ conic_status conic_estimate_spacings(conic_context *context, const conic_neighbo
   return conic_slots_share(context, neighbourhood->tree.n_slots, space_slots, &work, 0.6, 0.7, &column, 1);
 }
 
-/* Puts a value where it belongs among n sorted ones. */
-static void sort_in(double *sorted, size_t n, double value) {
-  for (; n > 0 && sorted[n - 1] > value; n--)
-    sorted[n] = sorted[n - 1];
-  sorted[n] = value;
+/* The upper median of what is not below 0, in whole blocks that end with zeros: the greatest with so few below. Each is
+ * compared with each, as sorting would branch on what cannot be foreseen. */
+enum { BLOCK = 8 };
+typedef double value_pair __attribute__((vector_size(16)));
+typedef int64_t pair_mask __attribute__((vector_size(16)));
+static double upper_median(const double *values, size_t n) {
+  const double half = (double)(n / 2);
+  const value_pair one = {1.0, 1.0};
+  value_pair median = {0.0, 0.0};
+  for (size_t begin = 0; begin < n; begin += BLOCK) {
+    value_pair own[BLOCK / 2], n_below[BLOCK / 2] = {{0.0}};
+    memcpy(own, values + begin, sizeof own);
+    for (size_t j = 0; j < n; j++)
+      for (int part = 0; part < BLOCK / 2; part++)
+        n_below[part] += (value_pair)((values[j] < own[part]) & (pair_mask)one);
+    for (int part = 0; part < BLOCK / 2; part++) {
+      value_pair low = (value_pair)((n_below[part] <= half) & (pair_mask)own[part]);
+      pair_mask is_more = low > median;
+      median = (value_pair)((is_more & (pair_mask)low) | (~is_more & (pair_mask)median));
+    }
+  }
+  return median[0] > median[1] ? median[0] : median[1];
 }
 
 /* The upper median of the neighbours' spacings. */
 static double median_spacing(const tangent_origin *p, const double *spacings) {
-  double sorted[CONIC_MAX_NEIGHBOURS];
+  double values[CONIC_MAX_NEIGHBOURS + BLOCK] = {0.0};
   size_t n = p->neighbourhood->n_neighbours;
   for (size_t i = 0; i < n; i++)
-    sort_in(sorted, i, spacings[p->list[i]]);
-  return sorted[n / 2];
+    values[i] = spacings[p->list[i]];
+  return upper_median(values, n);
 }
 
 /* Cuts the cell by the neighbours on the same surface. They are turned into the tangent plane, at their true distance:
  * where the surface bends away, a projection would shorten the distance and the cell. */
-static void cut_cell(const tangent_origin *p, const double u[3], const double v[3], double radius,
+static void cut_cell(const neighbour_views *views, size_t n, const double u[3], const double v[3], double radius,
                      conic_voronoi_cell *cell) {
   conic_voronoi_cell_begin(cell, radius);
-  for (size_t i = 0; i < p->neighbourhood->n_neighbours; i++) {
-    double d[3], distance2, x = 0.0, y = 0.0;
-    int is_same_surface = view_neighbour(p, p->list[i], d, &distance2);
-    if (0.25 * distance2 >= cell->greatest2)
-      return; /* and so do all after it */
-    if (!is_same_surface)
+  for (size_t i = 0; i < n && 0.25 * views->distances2[i] < cell->greatest2; i++) {
+    if (!views->are_same[i])
       continue;
-    for (int axis = 0; axis < 3; axis++) {
-      x += d[axis] * u[axis];
-      y += d[axis] * v[axis];
-    }
-    double stretch = sqrt(distance2 / (x * x + y * y));
+    double x = views->d[0][i] * u[0] + views->d[1][i] * u[1] + views->d[2][i] * u[2];
+    double y = views->d[0][i] * v[0] + views->d[1][i] * v[1] + views->d[2][i] * v[2];
+    double stretch = sqrt(views->distances2[i] / (x * x + y * y));
     conic_voronoi_cell_cut(cell, x * stretch, y * stretch);
   }
 }
 
 /* Whether the cell is open on two opposite sides: then the width of the surface is unknown, as on a cable. */
 static int is_open_across(const conic_voronoi_cell *cell, double radius) {
+  if (cell->greatest2 < 0.89 * radius * radius) /* no product of two corners is greater */
+    return 0;
   for (int i = 0; i < cell->n_corners; i++)
     for (int j = 0; j < i; j++)
       if (cell->corners[i][0] * cell->corners[j][0] + cell->corners[i][1] * cell->corners[j][1] <
@@ -164,41 +193,36 @@ static conic_ellipse circle(double radius) {
 }
 
 /* Confetti's ellipse (§4.3): around all neighbours, seen along the normal, on any surface. */
-static conic_ellipse bound_neighbours(const tangent_origin *p, const double u[3], const double v[3]) {
+static conic_ellipse bound_neighbours(const neighbour_views *views, size_t n, const double u[3], const double v[3]) {
   double points[CONIC_MAX_NEIGHBOURS][2];
-  int n = (int)p->neighbourhood->n_neighbours;
-  for (int i = 0; i < n; i++) {
-    double d[3], distance2;
-    view_neighbour(p, p->list[i], d, &distance2);
+  for (size_t i = 0; i < n; i++) {
+    const double d[3] = {views->d[0][i], views->d[1][i], views->d[2][i]};
     points[i][0] = conic_dot(d, u);
     points[i][1] = conic_dot(d, v);
   }
-  return conic_ellipse_bound((const double(*)[2])points, n, CONIC_OUTLINE_RATIO);
+  return conic_ellipse_bound((const double(*)[2])points, (int)n, CONIC_OUTLINE_RATIO);
 }
 
 /* The outline at a place, and the point's state that follows. */
-static conic_point_state outline(const tangent_origin *p, size_t slot, const double *spacings, const double u[3],
-                                 const double v[3], conic_ellipse *ellipse) {
+static conic_point_state outline(const tangent_origin *p, size_t slot, const double *spacings,
+                                 const neighbour_views *views, const double u[3], const double v[3],
+                                 conic_ellipse *ellipse) {
   conic_voronoi_cell cell;
-  double d[3], nearest2;
+  const size_t n = p->neighbourhood->n_neighbours;
   *ellipse = circle(LONE_OUTLINE);
-  if (p->neighbourhood->n_neighbours == 0)
+  if (n == 0)
     return CONIC_POINT_ISOLATED;
   double median = median_spacing(p, spacings);
-  view_neighbour(p, p->list[0], d, &nearest2);
   *ellipse = circle(ISOLATED_OUTLINE * median);
-  if (nearest2 > ISOLATION * ISOLATION * median * median)
+  if (views->distances2[0] > ISOLATION * ISOLATION * median * median)
     return CONIC_POINT_ISOLATED;
   double own = spacings[slot], greatest = GREATEST_GROWTH * median;
   double radius = CELL_RADIUS * (own < greatest ? own : greatest);
-  cut_cell(p, u, v, radius, &cell);
+  cut_cell(views, n, u, v, radius, &cell);
   if (is_open_across(&cell, radius)) {
-    double next2 = nearest2, next = 0.0;
-    if (p->neighbourhood->n_neighbours > 1)
-      view_neighbour(p, p->list[1], d, &next2);
-    next = CELL_RADIUS * sqrt(next2);
+    double next = CELL_RADIUS * sqrt(views->distances2[n > 1]);
     radius = next < radius ? next : radius;
-    cut_cell(p, u, v, radius, &cell);
+    cut_cell(views, n, u, v, radius, &cell);
   }
   *ellipse = conic_ellipse_bound((const double(*)[2])cell.corners, cell.n_corners, CONIC_OUTLINE_RATIO);
   conic_ellipse_retract(ellipse, (const double(*)[2])cell.corners, cell.n_corners, GREATEST_REACH * radius);
@@ -221,20 +245,18 @@ static void make_dot(conic_estimate *estimate, tangent_origin *p, size_t point, 
 }
 
 /* How far the neighbours are off the tangent plane, as a part of their distances, by the roots of mean squares. */
-static double roughness(const tangent_origin *p) {
-  double d[3], distance2, heights2 = 0.0, distances2 = 0.0;
-  for (size_t i = 0; i < p->neighbourhood->n_neighbours; i++) {
-    view_neighbour(p, p->list[i], d, &distance2);
-    double height = conic_dot(d, p->normal);
-    heights2 += height * height;
-    distances2 += distance2;
+static double roughness(const neighbour_views *views, size_t n) {
+  double heights2 = 0.0, distances2 = 0.0;
+  for (size_t i = 0; i < n; i++) {
+    heights2 += views->heights[i] * views->heights[i];
+    distances2 += views->distances2[i];
   }
   return sqrt(heights2 / distances2);
 }
 
 /* The reach as far as its roughness allows. */
-static double bounded_reach(const tangent_origin *p, double reach, double usual) {
-  double rough = roughness(p), most = usual * (rough * LEAST_REACH < ROUGHNESS ? ROUGHNESS / rough : LEAST_REACH);
+static double bounded_reach(double rough, double reach, double usual) {
+  double most = usual * (rough * LEAST_REACH < ROUGHNESS ? ROUGHNESS / rough : LEAST_REACH);
   return reach < most ? reach : most;
 }
 
@@ -252,6 +274,8 @@ static void spread_point(const spread_work *work, size_t point, size_t slot) {
   conic_estimate *estimate = work->estimate;
   float *const *given = estimate->model->points.normal;
   tangent_origin p = place_at(work->neighbourhood, slot);
+  const size_t n = work->neighbourhood->n_neighbours;
+  neighbour_views views;
   double own[3], u[3], v[3];
   float tangent_u[3], tangent_v[3];
   conic_ellipse ellipse;
@@ -259,11 +283,12 @@ static void spread_point(const spread_work *work, size_t point, size_t slot) {
   for (int axis = 0; axis < 3 && has_normal; axis++)
     p.normal[axis] = own[axis];
   conic_tangent_basis(p.normal, u, v);
-  conic_point_state state = outline(&p, slot, work->spacings, u, v, &ellipse);
+  view_neighbours(&p, &views);
+  conic_point_state state = outline(&p, slot, work->spacings, &views, u, v, &ellipse);
   if (estimate->rule == CONIC_ELLIPSE_BOUNDING && state == CONIC_POINT_SPREAD)
-    ellipse = bound_neighbours(&p, u, v);
+    ellipse = bound_neighbours(&views, n, u, v);
   if (estimate->dot && state == CONIC_POINT_SPREAD && ellipse.reach > LEAST_REACH * work->usual_reach)
-    ellipse.reach = bounded_reach(&p, ellipse.reach, work->usual_reach);
+    ellipse.reach = bounded_reach(roughness(&views, n), ellipse.reach, work->usual_reach);
   if (estimate->dot && state == CONIC_POINT_ISOLATED)
     estimate->dot[point] = 1.0f;
   else if (estimate->dot && work->neighbourhood->flags[slot] & CONIC_SLOT_SCATTERED) {
@@ -349,7 +374,7 @@ static void measure_slots(void *data, size_t begin, size_t end) {
 static double part_left(const spread_work *work, size_t slot) {
   const conic_neighbourhood *neighbourhood = work->neighbourhood;
   const uint32_t *list = conic_neighbourhood_of(neighbourhood, slot);
-  double sorted[CONIC_MAX_NEIGHBOURS], own = work->lengths[slot], most = HUGE_VAL;
+  double lengths[CONIC_MAX_NEIGHBOURS + BLOCK], own = work->lengths[slot], most = HUGE_VAL;
   size_t n = 0, n_exceeded = 0;
   for (size_t i = 0; i < neighbourhood->n_neighbours; i++) {
     double length = work->lengths[list[i]];
@@ -360,8 +385,10 @@ static double part_left(const spread_work *work, size_t slot) {
     n = 0;
     for (size_t i = 0; i < neighbourhood->n_neighbours; i++)
       if (work->lengths[list[i]] >= 0.0)
-        sort_in(sorted, n++, work->lengths[list[i]]);
-    most = GREATEST_EXCESS * sorted[n / 2]; /* NOLINT(clang-analyzer-core.UndefinedBinaryOperatorResult): n > 0 */
+        lengths[n++] = work->lengths[list[i]];
+    for (size_t i = 0; i < BLOCK; i++)
+      lengths[n + i] = 0.0;
+    most = GREATEST_EXCESS * upper_median(lengths, n);
   }
   int is_dot = work->are_dots || work->estimate->dot[neighbourhood->tree.point_of_slot[slot]] != 0.0f;
   if (is_dot && most > GREATEST_DOT * work->usual_dot)

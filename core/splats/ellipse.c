@@ -27,11 +27,25 @@ conic_ellipse conic_ellipse_shape(const double covariance[3], double least_ratio
   return ellipse;
 }
 
-void conic_ellipse_cover(conic_ellipse *ellipse, double x, double y) {
+static double reach2_of(const conic_ellipse *ellipse, double x, double y) {
   double along = x * ellipse->major[0] + y * ellipse->major[1];
   double across = (y * ellipse->major[0] - x * ellipse->major[1]) / ellipse->ratio;
-  double reach = sqrt(along * along + across * across);
+  return along * along + across * across;
+}
+
+void conic_ellipse_cover(conic_ellipse *ellipse, double x, double y) {
+  double reach = sqrt(reach2_of(ellipse, x, y));
   ellipse->reach = reach > ellipse->reach ? reach : ellipse->reach;
+}
+
+/* A root of the greatest is the greatest root. */
+static void cover_all(conic_ellipse *ellipse, const double (*points)[2], int n_points) {
+  double greatest2 = 0.0;
+  for (int i = 0; i < n_points; i++) {
+    double reach2 = reach2_of(ellipse, points[i][0], points[i][1]);
+    greatest2 = reach2 > greatest2 ? reach2 : greatest2;
+  }
+  ellipse->reach = sqrt(greatest2);
 }
 
 conic_ellipse conic_ellipse_bound(const double (*points)[2], int n_points, double least_ratio) {
@@ -39,8 +53,7 @@ conic_ellipse conic_ellipse_bound(const double (*points)[2], int n_points, doubl
   for (int i = 0; i < n_points; i++)
     conic_ellipse_add(covariance, points[i][0], points[i][1]);
   conic_ellipse ellipse = conic_ellipse_shape(covariance, least_ratio);
-  for (int i = 0; i < n_points; i++)
-    conic_ellipse_cover(&ellipse, points[i][0], points[i][1]);
+  cover_all(&ellipse, points, n_points);
   return ellipse;
 }
 
@@ -55,9 +68,7 @@ void conic_ellipse_retract(conic_ellipse *ellipse, const double (*points)[2], in
     ellipse->ratio = ratio > ellipse->ratio ? ratio : ellipse->ratio;
   }
   ellipse->ratio = ellipse->ratio < 1.0 ? ellipse->ratio : 1.0;
-  ellipse->reach = 0.0;
-  for (int i = 0; i < n_points; i++)
-    conic_ellipse_cover(ellipse, points[i][0], points[i][1]);
+  cover_all(ellipse, points, n_points);
 }
 
 void conic_ellipse_overlap(conic_ellipse *ellipse, double cell_area, double cover, double blend,
