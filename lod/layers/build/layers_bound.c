@@ -284,7 +284,7 @@ static void reach_below(void *data, size_t i_item) {
     }
     for (size_t i = 0; i < n && has_discs; i++)
       discs[i] = disc_in(below, keys[i], &facets[i], b->quantum);
-    most = has_discs ? conic_layers_disc_error(&b->discs, discs, n, below->error, most)
+    most = has_discs ? b->discs.loops.error(&b->discs, discs, n, below->error, most)
                      : conic_thinner_reach(b->thinner, keys, n, below->covering, most);
   }
   raise_most(b, most);

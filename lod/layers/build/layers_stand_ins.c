@@ -34,6 +34,7 @@ typedef struct circle {
 struct conic_layers_standing {
   conic_layers_schema schema;
   conic_layers_coder *coder;
+  conic_layers_disc_loops loops;
   disc_member *members;
   conic_layers_disc *discs; /* of a group */
   member_group *groups;
@@ -57,9 +58,13 @@ size_t conic_layers_standing_bytes(const conic_layers_plan *plan) {
 conic_status conic_layers_standing_create(const conic_layers_plan *plan, conic_layers_standing **standing) {
   conic_context *context = plan->context;
   conic_layers_schema schema;
+  conic_isa isa;
   *standing = NULL;
   if (!conic_layers_stand_in_schema(plan->schema, plan->quantum, &schema))
     return CONIC_OK;
+  conic_status status = conic_isa_choose(context, CONIC_ISA_AUTO, &isa);
+  if (status != CONIC_OK)
+    return status;
   conic_layers_standing *made = conic_memory_allocate_zeroed(context, 1, sizeof *made);
   if (!made)
     return CONIC_ERROR_MEMORY;
@@ -67,7 +72,8 @@ conic_status conic_layers_standing_create(const conic_layers_plan *plan, conic_l
   made->most_groups = most_stand_ins(plan);
   conic_srgb_decode_table(made->colors);
   conic_srgb_thresholds(made->thresholds);
-  conic_status status = conic_layers_coder_create(context, made->most_groups, &schema, NULL, &made->coder);
+  conic_layers_disc_loops_init(&made->loops, isa);
+  status = conic_layers_coder_create(context, made->most_groups, &schema, NULL, &made->coder);
   if (status == CONIC_OK)
     status = conic_memory_allocate_these(
         context, CONIC_ROOM(made->members, conic_layers_most_in_leaf(plan)),
@@ -232,11 +238,11 @@ static void measure_circle(const conic_layers_standing *s, const member_group *g
   const conic_layers_disc disc = disc_of_circle(c);
   for (size_t i = g->begin; i < g->end; i++)
     s->discs[i - g->begin] = disc_of_member(&s->members[i], s->members[i].own);
-  float found = conic_layers_disc_off(&disc, s->discs, g->end - g->begin, *past);
+  float found = s->loops.off(&disc, s->discs, g->end - g->begin, *past);
   *past = found > *past ? found : *past;
   for (size_t i = g->begin; i < g->end; i++) {
     const conic_layers_disc drawn = disc_of_member(&s->members[i], s->members[i].drawn);
-    found = conic_layers_disc_off(&drawn, &disc, 1, *off);
+    found = s->loops.off(&drawn, &disc, 1, *off);
     *off = found > *off ? found : *off;
   }
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/base/base.h"
+#include "core/lanes/instruction_sets.h"
 
 /* A set of points in a grid of cells, and room for what choosing them needs; each thread has its own. Coordinates are
  * steps of the file's grid, below 2²¹, and so are lengths. */
@@ -50,32 +51,38 @@ uint32_t conic_thinner_first(const conic_thinner *thinner);
  */
 size_t conic_thinner_numbers(const conic_thinner *thinner, uint32_t *numbers);
 
-/* --- how far full resolution is from the discs that stand for it (layers_discs.c) --- */
+/* --- how far full resolution is from the discs that stand for it (layers_discs_body.h) --- */
 
 /* A sample as it is drawn; lengths in steps of the grid. */
 typedef struct conic_layers_disc {
   float center[3], normal[3], radius;
-  const uint8_t *code; /* of the normal, where that is not known yet; only conic_layers_disc_error allows this */
+  const uint8_t *code; /* of the normal, where that is not known yet; only `error` below allows this */
 } conic_layers_disc;
 
-/* The discs of the points that a thinner has chosen, in the grid's order, as columns; CONIC_LANES more of each can be
- * read. Several threads may look. */
+struct conic_layers_chosen;
+typedef struct conic_layers_disc_loops {
+  /* The farthest that a disc, at its middle and at 16 places around it, is from the nearest of n discs; where it is no
+   * more than `enough`, any number that is not. */
+  float (*off)(const conic_layers_disc *disc, const conic_layers_disc *from, size_t n, float enough);
+  /* The greatest distance of the n discs from the chosen ones, plus `beyond`, by which they are off already; or `error`
+   * where that is more. It is a bound where one disc holds all of another; else it is measured at the middle and at 16
+   * places around it. The greatest of several sets is the same in whichever order they come. */
+  double (*error)(const struct conic_layers_chosen *chosen, const conic_layers_disc *discs, size_t n, double beyond,
+                  double error);
+} conic_layers_disc_loops;
+
+CONIC_DECLARE_LOOPS(conic_layers_disc_loops);
+
+/* The discs of the points that a thinner has chosen, in the grid's order, as columns; so many more of each can be read.
+ * Several threads may look. */
+enum { CONIC_CHOSEN_BEHIND = 16 };
 typedef struct conic_layers_chosen {
   const conic_thinner *thinner;
   float *center[3], *normal[3], *radius;
+  conic_layers_disc_loops loops;
 } conic_layers_chosen;
 
-/* Gives the chosen discs memory, which the caller releases by center[0]. Errors: MEMORY. */
+/* Gives the chosen discs memory, which the caller releases by center[0]. Errors: MEMORY, UNSUPPORTED. */
 conic_status conic_layers_chosen_create(conic_context *context, const conic_thinner *thinner, size_t n,
                                         conic_layers_chosen *chosen);
 void conic_layers_chosen_put(const conic_layers_chosen *chosen, size_t i, const conic_layers_disc *disc);
-
-/* The farthest that a disc, at its middle and at 16 places around it, is from the nearest of n discs; where it is no
- * more than `enough`, any number that is not. */
-float conic_layers_disc_off(const conic_layers_disc *disc, const conic_layers_disc *from, size_t n, float enough);
-
-/* The greatest distance of the n discs from the chosen ones, plus `beyond`, by which they are off already; or `error`
- * where that is more. It is a bound where one disc holds all of another; else it is measured at the middle and at 16
- * places around it. The greatest of several sets is the same in whichever order they come. */
-double conic_layers_disc_error(const conic_layers_chosen *chosen, const conic_layers_disc *discs, size_t n,
-                               double beyond, double error);

@@ -1,4 +1,5 @@
-/* How far discs are from those that stand for them: the greatest of all, in whichever order they are looked at. */
+/* How far discs are from those that stand for them: the greatest of all, in whichever order they are looked at, by any
+ * instruction set. */
 #include "core/base/random.h"
 #include "lod/layers/build/layers_thin.h"
 #include "lod/layers/format/layers_key.h"
@@ -46,11 +47,24 @@ static double part_in_order(const conic_layers_chosen *standing, const conic_lay
   double part = 0.0;
   for (size_t done = 0, at = first; done < N;) {
     size_t n = N - at < some ? N - at : some;
-    part = conic_layers_disc_error(standing, discs + at, n, 0.0, part);
+    part = standing->loops.error(standing, discs + at, n, 0.0, part);
     done += n;
     at = (at + n) % N;
   }
   return part;
+}
+
+/* Every instruction set gives the same bits, of whole sets and of single discs. */
+static void check_loops(conic_layers_chosen standing, const conic_layers_disc *discs, double part) {
+  const conic_layers_disc_loops best = standing.loops;
+  for (int isa = CONIC_ISA_SCALAR; isa < CONIC_N_ISAS; isa++) {
+    if (!conic_isa_is_here((conic_isa)isa))
+      continue;
+    conic_layers_disc_loops_init(&standing.loops, (conic_isa)isa);
+    CHECK(part_in_order(&standing, discs, 7, 5) == part);
+    for (size_t i = 3; i < N; i += 50)
+      CHECK(standing.loops.off(&discs[i], discs + i - 3, 3, 0.0f) == best.off(&discs[i], discs + i - 3, 3, 0.0f));
+  }
 }
 
 static void check_sheet(conic_context *context, uint64_t scene) {
@@ -78,12 +92,13 @@ static void check_sheet(conic_context *context, uint64_t scene) {
     conic_layers_chosen_put(&standing, k, &drawn[ranks[k]]);
   double part = part_in_order(&standing, discs, 0, N), most = 0.0;
   for (size_t i = 0; i < N; i++) {
-    double own = conic_layers_disc_error(&standing, &discs[i], 1, 0.0, 0.0);
+    double own = standing.loops.error(&standing, &discs[i], 1, 0.0, 0.0);
     most = own > most ? own : most;
   }
   CHECK(part == most && part > 0.0);
   for (size_t i = 1; i < N_ORDERS; i++)
     CHECK(part_in_order(&standing, discs, i * N / N_ORDERS, 1 + i) == part);
+  check_loops(standing, discs, part);
   conic_memory_release(context, standing.center[0]);
   conic_thinner_destroy(context, thinner);
 }

@@ -1,33 +1,11 @@
-/* How far full resolution is from the discs that stand for it, found by holding discs against discs. */
+/* How far full resolution is from the discs that stand for it, found by holding discs against discs, in lanes of any
+ * instruction set. */
 
 #include "core/lanes/lanes.h"
 #include "lod/layers/build/layers_thin.h"
 #include "lod/layers/format/layers_axes.h"
 
 enum { N_CORNERS = 16, N_PLACES = N_CORNERS + CONIC_LANES, MOST_NEAR = 64 };
-
-conic_status conic_layers_chosen_create(conic_context *context, const conic_thinner *thinner, size_t n,
-                                        conic_layers_chosen *chosen) {
-  size_t room = n + CONIC_LANES;
-  float *columns = conic_memory_allocate_zeroed(context, 7 * room, sizeof *columns);
-  *chosen = (conic_layers_chosen){.thinner = columns ? thinner : NULL};
-  if (!columns)
-    return CONIC_ERROR_MEMORY;
-  for (size_t axis = 0; axis < 3; axis++) {
-    chosen->center[axis] = columns + axis * room;
-    chosen->normal[axis] = columns + (3 + axis) * room;
-  }
-  chosen->radius = columns + 6 * room;
-  return CONIC_OK;
-}
-
-void conic_layers_chosen_put(const conic_layers_chosen *chosen, size_t i, const conic_layers_disc *disc) {
-  for (int axis = 0; axis < 3; axis++) {
-    chosen->center[axis][i] = disc->center[axis];
-    chosen->normal[axis][i] = disc->normal[axis];
-  }
-  chosen->radius[i] = disc->radius;
-}
 
 static conic_layers_disc disc_of(const conic_layers_chosen *chosen, size_t i) {
   conic_layers_disc disc = {.radius = chosen->radius[i]};
@@ -138,7 +116,7 @@ static float squared(float enough) {
   return enough > 0.0f ? enough * enough : 0.0f;
 }
 
-float conic_layers_disc_off(const conic_layers_disc *disc, const conic_layers_disc *from, size_t n, float enough) {
+static float disc_off(const conic_layers_disc *disc, const conic_layers_disc *from, size_t n, float enough) {
   static const float turn[2] = {1.0f, 0.0f};
   disc_places places;
   conic_layers_disc wider = *disc;
@@ -249,8 +227,8 @@ static float error_of_disc(disc_search *p, float enough, uint32_t *last) {
   return measured < least ? measured : least;
 }
 
-double conic_layers_disc_error(const conic_layers_chosen *chosen, const conic_layers_disc *discs, size_t n,
-                               double beyond, double error) {
+static double disc_error(const conic_layers_chosen *chosen, const conic_layers_disc *discs, size_t n, double beyond,
+                         double error) {
   disc_search p;
   uint32_t last = conic_thinner_first(chosen->thinner);
   p.chosen = chosen;
