@@ -12,6 +12,8 @@ typedef struct conic_radix_item {
 
 /* Sorts by the lowest `n_bits` of the keys, which have no others. Errors: MEMORY. */
 conic_status conic_radix_sort(conic_context *context, conic_radix_item *items, size_t n, int n_bits);
+/* The same with room for as many. Returns where they are then: one of the two. */
+const conic_radix_item *conic_radix_sort_in(conic_radix_item *items, conic_radix_item *room, size_t n, int n_bits);
 
 /* How many bits it takes to write numbers below `count`. */
 static inline int conic_bits_below(size_t count) {

@@ -4,6 +4,7 @@
 #include "gaussians/draw/gaussian_bins.h"
 
 #include "core/base/base.h"
+#include "core/base/radix.h"
 
 typedef struct bin_job {
   const conic_gaussian_runs *runs;
@@ -105,18 +106,14 @@ conic_status conic_gaussian_bins_make(conic_context *context, const conic_gaussi
 
 /* --- each list --- */
 
-typedef struct sort_item {
-  uint32_t key, entry;
-} sort_item;
-
 typedef struct sort_job {
   const float *keys;
   conic_gaussian_bins *bins;
-  sort_item *rooms; /* by thread: twice the longest list */
+  conic_radix_item *rooms; /* by thread: twice the longest list */
   size_t longest;
 } sort_job;
 
-enum { SORT_DIGITS = 4, SORT_DIGIT_BITS = 8, SORTED_TOGETHER = 16 };
+enum { SORTED_TOGETHER = 16 };
 
 /* Keys are depths over 0, or of a mean behind the eye below: ordered as their bits are, once those below are turned. */
 static uint32_t key_of(float key) {
@@ -124,40 +121,17 @@ static uint32_t key_of(float key) {
   return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
 }
 
-static uint32_t digit_of(const sort_item *item, int digit) {
-  return item->key >> (digit * SORT_DIGIT_BITS) & ((1u << SORT_DIGIT_BITS) - 1);
-}
-
-/* By digits, the last first; those that all keys share are left out. */
-static void sort_list(const float *keys, uint32_t *entries, size_t n, sort_item *from, sort_item *to) {
-  uint32_t starts[SORT_DIGITS][1 << SORT_DIGIT_BITS];
-  memset(starts, 0, sizeof starts);
-  for (size_t i = 0; i < n; i++) {
-    from[i] = (sort_item){key_of(keys[entries[i]]), entries[i]};
-    for (int digit = 0; digit < SORT_DIGITS; digit++)
-      starts[digit][digit_of(&from[i], digit)]++;
-  }
-  for (int digit = 0; digit < SORT_DIGITS && n > 1; digit++) {
-    if (starts[digit][digit_of(&from[0], digit)] == n)
-      continue;
-    for (uint32_t i = 0, place = 0; i < 1 << SORT_DIGIT_BITS; i++) {
-      const uint32_t count = starts[digit][i];
-      starts[digit][i] = place;
-      place += count;
-    }
-    for (size_t i = 0; i < n; i++)
-      to[starts[digit][digit_of(&from[i], digit)]++] = from[i];
-    sort_item *other = from;
-    from = to;
-    to = other;
-  }
+static void sort_list(const float *keys, uint32_t *entries, size_t n, conic_radix_item *items, conic_radix_item *room) {
   for (size_t i = 0; i < n; i++)
-    entries[i] = from[i].entry;
+    items[i] = (conic_radix_item){key_of(keys[entries[i]]), entries[i]};
+  const conic_radix_item *sorted = conic_radix_sort_in(items, room, n, 32);
+  for (size_t i = 0; i < n; i++)
+    entries[i] = sorted[i].value;
 }
 
 static void sort_lists(void *data, size_t i_item, int i_thread) {
   const sort_job *j = data;
-  sort_item *room = j->rooms + 2 * j->longest * (size_t)i_thread;
+  conic_radix_item *room = j->rooms + 2 * j->longest * (size_t)i_thread;
   for (size_t tile = i_item * SORTED_TOGETHER; tile < (i_item + 1) * SORTED_TOGETHER && tile < j->bins->n_tiles; tile++)
     sort_list(j->keys, j->bins->entries + j->bins->tile_begin[tile],
               j->bins->tile_begin[tile + 1] - j->bins->tile_begin[tile], room, room + j->longest);

@@ -553,7 +553,8 @@ conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const
 
 int conic_gaussian_has_ellipses(const conic_gaussian_view *view) {
   return view->rules->shape == CONIC_SHAPE_ELLIPSE && !view->rays && !view->is_parallel &&
-         !conic_profile_limits_axes(view->rules) && !(view->rules->fade_z > 0.0);
+         !conic_profile_limits_axes(view->rules) && view->rules->fade_z == 0.0 && view->rules->clip == 0.0 &&
+         view->rules->takes_rotation_as_is <= 1;
 }
 
 conic_gaussian_fate conic_gaussian_take_ellipse(const conic_gaussian_view *view, const conic_gaussians *gaussians,

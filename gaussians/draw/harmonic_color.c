@@ -1,21 +1,17 @@
 #include "gaussians/draw/gaussian_footprint.h"
 
 #include "core/base/vectors.h"
-#include "gaussians/scene/half.h"
+#include "gaussians/scene/gaussian_set.h"
 #include "gaussians/scene/harmonics.h"
 
 int conic_harmonic_sum(const conic_gaussians *set, size_t i, int is_plain, const float *harmonics, size_t stride,
                        float color[3]) {
-  const size_t n = (size_t)(set->sh_degree + 1) * (size_t)(set->sh_degree + 1), n_seen = is_plain ? 1 : n;
-  float sum[3] = {0.0f, 0.0f, 0.0f};
-  if (set->sh)
-    for (size_t k = 0; k < n_seen; k++)
-      for (size_t c = 0; c < 3; c++)
-        sum[c] += harmonics[k * stride] * set->sh[(i * n + k) * 3 + c];
-  else
-    for (size_t k = 0; k < n_seen; k++)
-      for (size_t c = 0; c < 3; c++)
-        sum[c] += harmonics[k * stride] * conic_float_of_half(set->sh_half[(i * n + k) * 3 + c]);
+  float room[CONIC_MOST_HARMONICS], sum[3] = {0.0f, 0.0f, 0.0f};
+  const float *sh = conic_gaussians_harmonics(set, i, room);
+  const size_t n = is_plain ? 3 : conic_harmonics_of_degree(set->sh_degree);
+  for (size_t k = 0; k < n; k += 3, harmonics += stride)
+    for (size_t c = 0; c < 3; c++)
+      sum[c] += *harmonics * sh[k + c];
   for (int c = 0; c < 3; c++) {
     sum[c] += 0.5f;
     color[c] = sum[c] > 0.0f ? sum[c] : 0.0f;

@@ -8,8 +8,6 @@
 
 enum { BLOCK = 128, MOST_TARGETS = 24 + CONIC_MOST_HARMONICS };
 
-typedef double ply_block[MOST_TARGETS][BLOCK];
-
 /* A property of the file, and where its values go. */
 typedef struct ply_target {
   float **column;  /* or */
@@ -25,11 +23,11 @@ typedef struct gaussian_reader {
   conic_gaussians *gaussians;
   ply_target targets[MOST_TARGETS];
   int columns[MOST_TARGETS]; /* the targets' properties */
-  int n_targets, is_plain;
+  int n_targets;
   size_t n_done; /* rows */
   float *filter; /* column of Mip-Splatting's filter_3D; null: none */
   size_t room;
-  ply_block block;
+  double block[MOST_TARGETS][BLOCK];
 } gaussian_reader;
 
 static int find_single(const conic_ply_header *header, const conic_ply_element *vertices, const char *name) {
@@ -157,12 +155,13 @@ static void settle_origin(gaussian_reader *reader, size_t n) {
     }
 }
 
-static void store_block(gaussian_reader *reader, ply_block block, size_t first, size_t n) {
+static void store_block(gaussian_reader *reader, size_t first, size_t n) {
   conic_gaussians *gaussians = reader->gaussians;
   size_t n_harmonics = conic_harmonics_of_degree(gaussians->sh_degree);
+  settle_origin(reader, n);
   for (int t = 0; t < reader->n_targets; t++) {
     const ply_target *target = &reader->targets[t];
-    double *values = block[t];
+    double *values = reader->block[t];
     double origin = target->origin_axis >= 0 ? gaussians->origin[target->origin_axis % 3] : 0.0;
     for (size_t i = 0; target->white > 0.0 && i < n; i++)
       values[i] = (values[i] / target->white - 0.5) / CONIC_SH_CONSTANT;
@@ -176,15 +175,17 @@ static void store_block(gaussian_reader *reader, ply_block block, size_t first, 
       for (size_t i = 0; i < n; i++)
         conic_gaussians_put_harmonic(gaussians, first + i, (size_t)target->i_harmonic, (float)values[i]);
   }
+  conic_gaussians_activate(gaussians, first, n);
 }
 
-/* Whether all values are floats that are stored as they are. */
-static int is_plain(const gaussian_reader *reader) {
-  int is_one = reader->source->format == CONIC_PLY_LITTLE_ENDIAN && reader->gaussians->sh;
+/* Whether threads may read the rows: those of a whole file, of floats that are stored as they are. */
+static int can_share_rows(const gaussian_reader *reader) {
+  const conic_ply_source *source = reader->source;
+  int can = source->input->has_size && source->format == CONIC_PLY_LITTLE_ENDIAN && reader->gaussians->sh &&
+            conic_ply_is_plain(source->format, source->element);
   for (int t = 0; t < reader->n_targets; t++)
-    is_one =
-        is_one && reader->properties[reader->columns[t]].type == CONIC_PLY_FLOAT && reader->targets[t].white == 0.0;
-  return is_one;
+    can = can && reader->properties[reader->columns[t]].type == CONIC_PLY_FLOAT && reader->targets[t].white == 0.0;
+  return can;
 }
 
 /* The same of such rows, straight from them: a column at a time, and the harmonics row by row. */
@@ -210,16 +211,9 @@ static void copy_rows(gaussian_reader *reader, const unsigned char *bytes, size_
 
 static void take_rows(void *data, const unsigned char *bytes, size_t n, size_t first, void *room) {
   gaussian_reader *reader = data;
-  const size_t row_bytes = reader->source->element->least_row_bytes, begin = reader->n_done + first;
-  if (reader->is_plain)
-    copy_rows(reader, bytes, begin, n);
-  for (size_t k = 0; k < n && !reader->is_plain; k += BLOCK) {
-    size_t n_now = n - k < BLOCK ? n - k : BLOCK;
-    conic_ply_convert_rows(reader->source, reader->properties, reader->columns, reader->n_targets,
-                           bytes + k * row_bytes, n_now, BLOCK, room);
-    store_block(reader, room, begin + k, n_now);
-  }
-  conic_gaussians_activate(reader->gaussians, begin, n);
+  (void)room;
+  copy_rows(reader, bytes, reader->n_done + first, n);
+  conic_gaussians_activate(reader->gaussians, reader->n_done + first, n);
 }
 
 /* Of a pipe that says that much comes, arrays grow with what has really come. */
@@ -235,34 +229,18 @@ static conic_status make_gaussian_room(gaussian_reader *reader, size_t used) {
   return status;
 }
 
-/* Whether threads may read what follows: the rows of a whole file, whose origin is known. */
-static int can_share_rows(const gaussian_reader *reader) {
-  return reader->source->input->has_size && reader->targets[0].origin_axis != 0 &&
-         conic_ply_is_plain(reader->source->format, reader->source->element) &&
-         reader->gaussians->count - reader->n_done > CONIC_PLY_SHARED_ROWS;
-}
-
 static conic_status read_gaussian_rows(gaussian_reader *reader) {
   const size_t count = (size_t)reader->source->element->count;
-  const conic_ply_taker taker = {take_rows, reader, sizeof(ply_block)};
-  conic_status status = CONIC_OK;
-  reader->is_plain = is_plain(reader);
-  for (size_t n; status == CONIC_OK && reader->n_done < count; reader->n_done = (size_t)reader->source->i_row) {
+  const conic_ply_taker taker = {take_rows, reader, 0};
+  conic_status status = can_share_rows(reader) ? conic_ply_share_rows(reader->source, count, &taker) : CONIC_OK;
+  for (size_t n; status == CONIC_OK && (reader->n_done = (size_t)reader->source->i_row) < count;) {
     n = count - reader->n_done;
     status = make_gaussian_room(reader, reader->n_done);
-    if (status == CONIC_OK && can_share_rows(reader)) {
-      status = conic_ply_share_rows(reader->source, n, &taker);
-      reader->n_done = (size_t)reader->source->i_row;
-      n = count - reader->n_done;
-    }
-    if (status == CONIC_OK && n > 0)
+    if (status == CONIC_OK)
       status = conic_ply_read_rows(reader->source, reader->properties, reader->columns, reader->n_targets, BLOCK, &n,
                                    (double *)reader->block);
-    if (status != CONIC_OK || n == 0)
-      continue;
-    settle_origin(reader, n);
-    store_block(reader, reader->block, reader->n_done, n);
-    conic_gaussians_activate(reader->gaussians, reader->n_done, n);
+    if (status == CONIC_OK)
+      store_block(reader, reader->n_done, n);
   }
   return status;
 }

@@ -40,13 +40,10 @@ typedef struct wide_gaussian {
 } wide_gaussian;
 
 CONIC_INLINE void place_wide_axes(const conic_gaussian_view *view, const wide q[4], wide squares, wide_gaussian *g) {
-  const int as_is = view->rules->takes_rotation_as_is;
   wide one_over = 1.0 / wide_sqrt(squares), rows[3][3];
-  if (as_is)
+  if (view->rules->takes_rotation_as_is)
     one_over =
         wide_select((squares - 1.0 < CONIC_UNIT_SLACK) & (1.0 - squares < CONIC_UNIT_SLACK), wide_of(1.0), one_over);
-  if (as_is > 1)
-    one_over = wide_of(1.0);
   const wide w = q[0] * one_over, x = q[1] * one_over, y = q[2] * one_over, z = q[3] * one_over;
   rows[0][0] = 1.0 - 2.0 * (y * y + z * z);
   rows[0][1] = 2.0 * (x * y - w * z);
@@ -122,8 +119,6 @@ CONIC_INLINE void find_wide_ellipse(const conic_gaussian_view *view, wide_gaussi
     for (int k = 0; k < 3; k++)
       rows[axis][k] = focal[axis] / g->mean[2] * (g->unit[k][axis] - slope * g->unit[k][2]) * g->scale[k];
     g->is_drawn &= wide_is_number(place);
-    if (rules->clip > 0.0)
-      g->is_drawn &= ~(wide_absolute(place - 0.5 * size[axis]) > rules->clip * 0.5 * size[axis]);
     wide_store(e->place[axis] + at, place);
   }
   for (int k = 0; k < 3; k++)

@@ -150,21 +150,11 @@ CONIC_INLINE void composite_in_order(const conic_gaussian_list *list, conic_gaus
 }
 
 static void composite_ellipses_in_lanes(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
-  if (list->wants == CONIC_GAUSSIAN_ALL)
-    composite_in_order(list, tile, CONIC_SHAPE_ELLIPSE, CONIC_GAUSSIAN_ALL);
-  else if (list->wants == CONIC_GAUSSIAN_DEPTHS)
-    composite_in_order(list, tile, CONIC_SHAPE_ELLIPSE, CONIC_GAUSSIAN_DEPTHS);
-  else
-    composite_in_order(list, tile, CONIC_SHAPE_ELLIPSE, CONIC_GAUSSIAN_COLORS);
+  CONIC_BY_WANTS(composite_in_order, list, tile, CONIC_SHAPE_ELLIPSE);
 }
 
 static void composite_discs_in_lanes(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
-  if (list->wants == CONIC_GAUSSIAN_ALL)
-    composite_in_order(list, tile, CONIC_SHAPE_DISC, CONIC_GAUSSIAN_ALL);
-  else if (list->wants == CONIC_GAUSSIAN_DEPTHS)
-    composite_in_order(list, tile, CONIC_SHAPE_DISC, CONIC_GAUSSIAN_DEPTHS);
-  else
-    composite_in_order(list, tile, CONIC_SHAPE_DISC, CONIC_GAUSSIAN_COLORS);
+  CONIC_BY_WANTS(composite_in_order, list, tile, CONIC_SHAPE_DISC);
 }
 
 #ifndef CONIC_ON_DEVICE

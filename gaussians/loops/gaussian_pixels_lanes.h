@@ -4,6 +4,17 @@
 #include "core/lanes/lanes.h"
 #include "gaussians/draw/gaussian_tile.h"
 
+/* Calls a function whose last argument is a constant: what the list wants. */
+#define CONIC_BY_WANTS(composite, list, tile, shape)                                                                   \
+  do {                                                                                                                 \
+    if ((list)->wants == CONIC_GAUSSIAN_ALL)                                                                           \
+      composite(list, tile, shape, CONIC_GAUSSIAN_ALL);                                                                \
+    else if ((list)->wants == CONIC_GAUSSIAN_DEPTHS)                                                                   \
+      composite(list, tile, shape, CONIC_GAUSSIAN_DEPTHS);                                                             \
+    else                                                                                                               \
+      composite(list, tile, shape, CONIC_GAUSSIAN_COLORS);                                                             \
+  } while (0)
+
 /* What of a tile's list does not change. */
 typedef struct scene {
   const conic_gaussian_list *list;

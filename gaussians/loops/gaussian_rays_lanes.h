@@ -336,12 +336,7 @@ CONIC_INLINE void composite_rays_block_by_block(const conic_gaussian_list *list,
 }
 
 static void composite_rays_in_lanes(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
-  if (list->wants == CONIC_GAUSSIAN_ALL)
-    composite_rays_block_by_block(list, tile, CONIC_SHAPE_RAY, CONIC_GAUSSIAN_ALL);
-  else if (list->wants == CONIC_GAUSSIAN_DEPTHS)
-    composite_rays_block_by_block(list, tile, CONIC_SHAPE_RAY, CONIC_GAUSSIAN_DEPTHS);
-  else
-    composite_rays_block_by_block(list, tile, CONIC_SHAPE_RAY, CONIC_GAUSSIAN_COLORS);
+  CONIC_BY_WANTS(composite_rays_block_by_block, list, tile, CONIC_SHAPE_RAY);
 }
 
 static void composite_filtered_in_lanes(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
