@@ -6,6 +6,8 @@
 #include "core/base/loan_find.h"
 #include "core/base/machine.h"
 
+enum { N_KEPT = sizeof((conic_context *)0)->kept / sizeof *((conic_context *)0)->kept };
+
 static void *default_allocate(void *cookie, size_t bytes) {
   (void)cookie;
   return malloc(bytes);
@@ -65,6 +67,8 @@ void conic_context_destroy(conic_context *context) {
     next = block->next;
     conic_memory_release(context, block);
   }
+  for (int i = 0; i < N_KEPT; i++)
+    conic_memory_release(context, context->kept[i]);
   pthread_mutex_destroy(&context->outputs_lock);
   context->options.release(context->options.allocator_cookie, context);
 }
@@ -73,7 +77,8 @@ int conic_context_threads(const conic_context *context) {
   return context->options.threads;
 }
 
-/* Each block is preceded by the pointer that the allocator gave, so that any allocator serves aligned blocks. */
+/* Each block is preceded by its size and the pointer that the allocator gave, so that any allocator serves aligned
+ * blocks. */
 static const size_t alignment_bytes = 64;
 
 /* Large blocks of zeros come from the system as such: whoever writes to them first touches them, on its thread. */
@@ -82,6 +87,32 @@ static void *take_zeros(const conic_context *context, size_t bytes) {
     return calloc(1, bytes);
   void *raw = context->options.allocate(context->options.allocator_cookie, bytes);
   return raw ? memset(raw, 0, bytes) : NULL;
+}
+
+static size_t size_of_block(const void *block) {
+  size_t bytes;
+  memcpy(&bytes, (const char *)block - sizeof(void *) - sizeof bytes, sizeof bytes);
+  return bytes;
+}
+
+void conic_memory_keep(conic_context *context, void *pointer) {
+  for (int i = 0; pointer && context->options.large_pages && i < N_KEPT; i++) {
+    void *none = NULL;
+    if (atomic_compare_exchange_strong(&context->kept[i], &none, pointer))
+      return;
+  }
+  conic_memory_release(context, pointer);
+}
+
+/* A kept block that is not much larger; null: there is none. */
+static void *take_kept(conic_context *context, size_t bytes) {
+  for (int i = 0; context->options.large_pages && i < N_KEPT; i++) {
+    void *block = atomic_exchange(&context->kept[i], NULL);
+    if (block && size_of_block(block) >= bytes && size_of_block(block) / 2 <= bytes)
+      return block;
+    conic_memory_keep(context, block);
+  }
+  return NULL;
 }
 
 static void *take_block(conic_context *context, size_t count, size_t size, int is_zeroed) {
@@ -93,6 +124,9 @@ static void *take_block(conic_context *context, size_t count, size_t size, int i
     return NULL;
   }
   size_t bytes = count * size + 2 * alignment_bytes;
+  void *kept = is_zeroed ? NULL : take_kept(context, count * size);
+  if (kept)
+    return kept;
   char *raw =
       is_zeroed ? take_zeros(context, bytes) : context->options.allocate(context->options.allocator_cookie, bytes);
   if (!raw) {
@@ -101,6 +135,8 @@ static void *take_block(conic_context *context, size_t count, size_t size, int i
   }
   size_t past = (uintptr_t)raw % alignment_bytes;
   char *aligned = raw + (2 * alignment_bytes - past);
+  bytes -= 2 * alignment_bytes;
+  memcpy(aligned - sizeof raw - sizeof bytes, &bytes, sizeof bytes);
   memcpy(aligned - sizeof raw, &raw, sizeof raw);
   return aligned;
 }

@@ -39,6 +39,7 @@ struct conic_context {
   conic_context_options options; /* allocate, release and threads are set */
   conic_pool *pool;
   _Atomic(conic_lasting *) lasting; /* the newest first */
+  _Atomic(void *) kept[8];          /* blocks of memory; null: none */
   size_t texture_bytes;             /* of all textures that exist */
   int reads_texture;                /* the picture that is read will become a texture */
   int guards_inputs;                /* core/files/guard.h; so are the next members */

@@ -67,6 +67,10 @@ static inline size_t conic_memory_rounded(size_t bytes) {
 /* Releases what allocate gave; null is allowed. */
 void conic_memory_release(conic_context *context, void *pointer);
 
+/* The same of a block that is likely to be asked for again, as by the next picture: where the context has large_pages,
+ * it is kept for that, so that the system need not clear its pages anew. */
+void conic_memory_keep(conic_context *context, void *pointer);
+
 /* Releases n blocks; null ones are allowed. */
 void conic_memory_release_all(conic_context *context, void *const *pointers, size_t n);
 /* Releases the blocks that are written out one after the other. */

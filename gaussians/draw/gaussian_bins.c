@@ -158,6 +158,7 @@ conic_status conic_gaussian_bins_sort(conic_context *context, const conic_gaussi
 }
 
 void conic_gaussian_bins_release(conic_context *context, conic_gaussian_bins *bins) {
-  conic_memory_release_these(context, bins->tile_begin, bins->entries);
+  conic_memory_release(context, bins->tile_begin);
+  conic_memory_keep(context, bins->entries);
   memset(bins, 0, sizeof *bins);
 }

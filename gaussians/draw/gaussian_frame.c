@@ -233,8 +233,11 @@ static void release_window(frame *f) {
 void conic_gaussian_picture_release(conic_gaussian_picture *f) {
   if (!f)
     return;
-  conic_memory_release_these(f->context, f->footprints, f->keys, f->rays, f->filters, f->sights, f->normals,
-                             f->n_of_run, f->n_skipped_of_run, f->n_entries_of_run);
+  conic_memory_keep(f->context, f->footprints);
+  conic_memory_keep(f->context, f->keys);
+  conic_memory_keep(f->context, f->rays);
+  conic_memory_release_these(f->context, f->filters, f->sights, f->normals, f->n_of_run, f->n_skipped_of_run,
+                             f->n_entries_of_run);
   conic_view_rays_release(f->context, &f->view_rays);
   conic_memory_release(f->context, f);
 }

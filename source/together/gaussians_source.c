@@ -1,6 +1,9 @@
 /* Gaussian scenes: they draw themselves, composited by alpha. */
 
 #include "source/together/gaussians_source.h"
+
+#include <stdatomic.h>
+
 #include "conic/opencl.h"
 #include "core/base/vectors.h"
 #include "core/image/image_common.h"
@@ -138,8 +141,10 @@ static conic_status allocate_planes(conic_context *context, const conic_image *i
 
 static void release_planes(conic_context *context, fine_picture *fine) {
   conic_gaussian_planes *p = &fine->planes;
-  conic_memory_release_these(context, p->rgb, p->transparency, p->z, p->median_z, p->inverse_z, p->normal, p->count,
-                             p->id, p->last);
+  conic_memory_keep(context, p->rgb);
+  conic_memory_keep(context, p->transparency);
+  conic_memory_keep(context, p->z);
+  conic_memory_release_these(context, p->median_z, p->inverse_z, p->normal, p->count, p->id, p->last);
 }
 
 static double mean_of(const fine_picture *fine, const float *plane, size_t channels, size_t channel, size_t x,
@@ -197,12 +202,25 @@ static void reduce_others(conic_context *context, const fine_picture *picture, c
   conic_samples_reduce(context, &fine, picture->samples, 0, 0, &others);
 }
 
-static uint64_t reduce_samples(const fine_picture *fine, const conic_image *image) {
+typedef struct sample_reduction {
+  const fine_picture *fine;
+  const conic_image *image;
+  atomic_uint_fast64_t n_covered;
+} sample_reduction;
+
+static void reduce_samples_of_row(void *data, size_t y) {
+  sample_reduction *r = data;
+  const size_t width = (size_t)r->image->width;
   uint64_t n_covered = 0;
-  for (size_t y = 0; y < (size_t)image->height; y++)
-    for (size_t x = 0; x < (size_t)image->width; x++)
-      n_covered += (uint64_t)reduce_pixel(fine, x, y, y * (size_t)image->width + x, image);
-  return n_covered;
+  for (size_t x = 0; x < width; x++)
+    n_covered += (uint64_t)reduce_pixel(r->fine, x, y, y * width + x, r->image);
+  atomic_fetch_add_explicit(&r->n_covered, n_covered, memory_order_relaxed);
+}
+
+static uint64_t reduce_samples(conic_context *context, const fine_picture *fine, const conic_image *image) {
+  sample_reduction r = {.fine = fine, .image = image};
+  conic_parallel_for(context, (size_t)image->height, reduce_samples_of_row, &r);
+  return r.n_covered;
 }
 
 static void tell_drawing(const gaussians_source *g, uint64_t n_pairs, uint64_t n_covered,
@@ -337,7 +355,7 @@ static conic_status composite_window(conic_source_windows *w, const conic_window
                         (uint32_t)g->gaussians.count, &fine.planes);
   if (status == CONIC_OK) {
     reduce_others(context, &fine, image);
-    uint64_t n_covered = reduce_samples(&fine, image);
+    uint64_t n_covered = reduce_samples(context, &fine, image);
     image->is_display = !g->gaussians.is_linear;
     g->drawn = *conic_gaussian_picture_statistics(picture);
     tell_drawing(g, g->drawn.pairs - n_before, n_covered, statistics);

@@ -126,6 +126,41 @@ static void test_filter(conic_context *context) {
   conic_gaussians_release(context, &scene);
 }
 
+/* So many that threads share the rows: what they copy, and what is read value by value, of the same numbers as
+ * doubles, is the same. */
+static void test_shared(conic_context *context) {
+  enum { N = 40001, N_COLUMNS = 27 };
+  static const char *const names[N_COLUMNS] = {
+      "f_dc_0",   "f_dc_1",   "f_dc_2",   "x",       "y",       "z",       "f_rest_0", "f_rest_1", "f_rest_2",
+      "f_rest_3", "f_rest_4", "f_rest_5", "scale_0", "scale_1", "scale_2", "f_rest_6", "f_rest_7", "f_rest_8",
+      "opacity",  "rot_0",    "rot_1",    "rot_2",   "rot_3",   "nx",      "ny",       "nz",       "other"};
+  conic_gaussians read[2];
+  for (int is_double = 0; is_double < 2; is_double++) {
+    FILE *file = fopen("shared.ply", "wb");
+    fprintf(file, "ply\nformat binary_little_endian 1.0\nelement vertex %d\n", N);
+    for (int k = 0; k < N_COLUMNS; k++)
+      fprintf(file, "property %s %s\n", is_double && (k < 3 || k > 5) ? "double" : "float", names[k]);
+    fprintf(file, "end_header\n");
+    for (uint32_t i = 0; i < N; i++)
+      for (uint32_t k = 0; k < N_COLUMNS; k++) {
+        const float value = (float)((i * 2654435761u + k * 40503u) >> 16) / 65536.0f - 0.5f;
+        const double exact = (double)value;
+        fwrite(is_double && (k < 3 || k > 5) ? (const void *)&exact : &value, is_double && (k < 3 || k > 5) ? 8 : 4, 1,
+               file);
+      }
+    fclose(file);
+    read[is_double] = gaussians_read_again(context, "shared.ply", 1);
+  }
+  float **first[CONIC_MOST_GAUSSIAN_COLUMNS], **second[CONIC_MOST_GAUSSIAN_COLUMNS];
+  const int n = conic_gaussians_list_columns(&read[0], first);
+  CHECK(n == 15 && conic_gaussians_list_columns(&read[1], second) == n);
+  for (int k = 0; k < n; k++)
+    CHECK(memcmp(*first[k], *second[k], N * sizeof(float)) == 0);
+  CHECK(read[0].sh_degree == 1 && memcmp(read[0].sh, read[1].sh, (size_t)N * 12 * sizeof(float)) == 0);
+  conic_gaussians_release(context, &read[0]);
+  conic_gaussians_release(context, &read[1]);
+}
+
 int main(void) {
   conic_context *context = files_context();
   test_ply(context);
@@ -133,6 +168,7 @@ int main(void) {
   test_comments(context);
   test_betas(context);
   test_filter(context);
+  test_shared(context);
   files_end(context);
   return check_result();
 }

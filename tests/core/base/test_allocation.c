@@ -250,7 +250,40 @@ static void write_las(void) {
   free(file.bytes);
 }
 
+/* Where pictures repeat, a block that was kept comes back for one as large or up to half smaller; all are released in
+ * the end. */
+static void test_kept(int repeats, size_t size, int comes_back) {
+  enum { KEPT = 5000 };
+  conic_context_options options;
+  conic_context *context;
+  conic_context_options_init(&options);
+  memory = (allocator){0};
+  options.allocate = allocate;
+  options.release = release;
+  options.allocator_cookie = &memory;
+  options.large_pages = repeats;
+  options.threads = 1;
+  CHECK_OK(conic_context_create(&options, &context));
+  void *first = conic_memory_allocate(context, KEPT, 1);
+  const long n_before = memory.n_alive;
+  conic_memory_keep(context, first);
+  CHECK(memory.n_alive == n_before - !repeats);
+  void *second = conic_memory_allocate(context, size, 1);
+  CHECK(memory.n_alive == n_before + (repeats && !comes_back));
+  conic_memory_release(context, second);
+  for (size_t k = 0; k < 12; k++) /* more than are kept */
+    conic_memory_keep(context, conic_memory_allocate(context, (10 << k) * KEPT, 1));
+  conic_memory_keep(context, NULL);
+  conic_context_destroy(context);
+  CHECK(memory.n_alive == 0);
+}
+
 int main(void) {
+  test_kept(0, 5000, 0);
+  test_kept(1, 5000, 1);
+  test_kept(1, 2500, 1);
+  test_kept(1, 5001, 0);
+  test_kept(1, 2499, 0);
   static const char *const inputs[] = {"points.ply", "mesh.obj", "points.xyz", "points.las"};
   conic_context *context = files_context(); /* for the folder */
   files_write("camera.json", "{\"width\": 48, \"height\": 40, \"fx\": 50, \"fy\": 50, \"cx\": 24, \"cy\": 20,\n"
