@@ -272,7 +272,7 @@ static void test_kept(int repeats, size_t size, int comes_back) {
   CHECK(memory.n_alive == n_before + (repeats && !comes_back));
   conic_memory_release(context, second);
   for (size_t k = 0; k < 12; k++) /* more than are kept */
-    conic_memory_keep(context, conic_memory_allocate(context, (10 << k) * KEPT, 1));
+    conic_memory_keep(context, conic_memory_allocate(context, ((size_t)10 << k) * KEPT, 1));
   conic_memory_keep(context, NULL);
   conic_context_destroy(context);
   CHECK(memory.n_alive == 0);
