@@ -19,13 +19,13 @@ typedef struct chosen {
 } chosen;
 
 typedef struct level_cutting {
+  conic_levels_scene *scene;
   conic_levels *levels;
   const conic_levels_wish *wish;
   conic_viewpoint from;
   int is_plain; /* a pinhole without a lens: its sides are known */
   double focal;
   double error;
-  uint64_t most;
   chosen *list;
   size_t n, room;
   uint32_t *clouds[2]; /* to be looked at in this level and the next one */
@@ -33,9 +33,22 @@ typedef struct level_cutting {
   uint64_t n_merged;
 } level_cutting;
 
-uint64_t conic_levels_most(const conic_levels *levels) {
-  const uint64_t each = DRAWING_BYTES + UINT64_C(4) * WORDS_BESIDE * conic_levels_columns(&levels->header, 0);
-  return levels->memory_bytes == 0 ? UINT64_MAX : levels->memory_bytes / each + 1;
+/* Those of all scenes of a picture. */
+typedef struct level_cuttings {
+  level_cutting *list;
+  size_t n;
+  uint64_t most, n_found; /* n_found: drawn of all, or the least that would be where that is more than `most` */
+} level_cuttings;
+
+uint64_t conic_levels_most(const conic_levels_scene *scenes, size_t n) {
+  uint64_t most = UINT64_MAX;
+  for (size_t i = 0; i < n; i++) {
+    const conic_levels *l = scenes[i].levels;
+    const uint64_t each = DRAWING_BYTES + UINT64_C(4) * WORDS_BESIDE * conic_levels_columns(&l->header, 0);
+    if (l->memory_bytes > 0 && l->memory_bytes / each < most)
+      most = l->memory_bytes / each + 1;
+  }
+  return most;
 }
 
 static float number_of(const conic_levels *l, uint32_t cloud, size_t column, size_t i) {
@@ -63,7 +76,7 @@ static int look_at(const level_cutting *c, const float mean[3], double reach, do
   conic_viewpoint_move_floats(&c->from, mean, p);
   const double distance = conic_length(p), z = c->is_plain ? p[2] - reach : distance - reach;
   *scale = HUGE_VAL;
-  if (c->wish->camera.kind == CONIC_CAMERA_ORTHOGRAPHIC)
+  if (c->scene->camera.kind == CONIC_CAMERA_ORTHOGRAPHIC)
     *scale = c->focal;
   else if (z > 0.0)
     *scale = c->is_plain ? c->focal * (distance + reach) / (z * z) : c->focal / z;
@@ -78,11 +91,11 @@ static double find_left(const level_cutting *c, const float mean[3], double reac
     return 1.0;
   conic_viewpoint_move_floats(&c->from, mean, p);
   const conic_camera *camera = &veil->camera;
-  const double near = reach / (double)CONIC_BLEND_DEVIATIONS, z = p[2] - near;
+  const double near = reach / (double)CONIC_BLEND_DEVIATIONS, z = (p[2] - near) * c->scene->unit;
   if (!(z > 0.0))
     return 1.0;
   const double x = p[0] / p[2] * camera->fx + camera->cx, y = p[1] / p[2] * camera->fy + camera->cy;
-  const double around = fmin(near / z * fmax(camera->fx, camera->fy), most_around);
+  const double around = fmin(near / (p[2] - near) * fmax(camera->fx, camera->fy), most_around);
   const int first[2] = {(int)fmax(x - around, 0.0), (int)fmax(y - around, 0.0)};
   if (!(x + around >= 0.0 && y + around >= 0.0 && x - around < camera->width && y - around < camera->height))
     return 1.0;
@@ -143,8 +156,8 @@ static conic_status look_into(level_cutting *c, uint32_t cloud, const unsigned c
   return status;
 }
 
-/* Cuts at an error; *is_over: more are to be drawn than may. */
-static conic_status cut_at(level_cutting *c, double error, int *is_over) {
+/* Cuts one scene. It ends where more than so many are open or drawn: *n_found are at least. */
+static conic_status cut_one(level_cutting *c, double error, uint64_t most, uint64_t *n_found) {
   conic_levels *l = c->levels;
   conic_status status = CONIC_OK;
   c->error = error;
@@ -152,8 +165,8 @@ static conic_status cut_at(level_cutting *c, double error, int *is_over) {
   c->n_merged = 0;
   c->clouds[0][0] = 0;
   c->n_clouds[0] = 1;
-  *is_over = 0;
-  for (int level = 0; level < l->shape.n_levels && status == CONIC_OK && !*is_over; level++) {
+  *n_found = 0;
+  for (int level = 0; level < l->shape.n_levels && status == CONIC_OK && *n_found <= most; level++) {
     const uint32_t *now = c->clouds[level % 2];
     uint32_t *next = c->clouds[!(level % 2)];
     const int is_leaf = level + 1 == l->shape.n_levels;
@@ -171,34 +184,60 @@ static conic_status cut_at(level_cutting *c, double error, int *is_over) {
           next[n_next++] = l->shape.first[level + 1] + CONIC_LEVELS_CHILDREN * at + child;
     }
     c->n_clouds[!(level % 2)] = n_next;
-    *is_over = c->n + n_open > c->most;
+    *n_found = c->n + n_open;
   }
   return status;
 }
 
+/* Cuts all scenes at one error; *is_over: more are to be drawn than may. */
+static conic_status cut_at(level_cuttings *all, double error, int *is_over) {
+  conic_status status = CONIC_OK;
+  all->n_found = 0;
+  for (size_t i = 0; i < all->n && status == CONIC_OK && all->n_found <= all->most; i++) {
+    uint64_t n_found;
+    status = cut_one(&all->list[i], error, all->most - all->n_found, &n_found);
+    all->n_found += n_found;
+  }
+  *is_over = all->n_found > all->most;
+  return status;
+}
+
+/* Says how many the least are that can be drawn. */
+static conic_status refuse_few(level_cuttings *all, double error) {
+  const uint64_t most = all->most;
+  const level_cutting *first = all->list;
+  int is_over;
+  all->most = UINT64_MAX;
+  conic_status status = cut_at(all, error, &is_over);
+  return status != CONIC_OK
+             ? status
+             : conic_fail(first->levels->context, CONIC_ERROR_INPUT,
+                          "%s: its coarsest picture has %llu Gaussians, and %s %llu", first->levels->name,
+                          (unsigned long long)all->n_found,
+                          first->wish->budget == most ? "the budget is" : "the memory holds", (unsigned long long)most);
+}
+
 /* The least error, to a 512th of it, at which no more are drawn than may. It comes from above, so that little more is
- * read than is needed. Errors: also INPUT (the root is more). */
-static conic_status find_error(level_cutting *c, double least) {
+ * read than is needed. Errors: also INPUT (the coarsest picture has more). */
+static conic_status find_error(level_cuttings *all, double least) {
   double high = 1e12, low = high;
   int is_over;
-  conic_status status = cut_at(c, high, &is_over);
+  conic_status status = cut_at(all, high, &is_over);
   if (status == CONIC_OK && is_over)
-    return conic_fail(c->levels->context, CONIC_ERROR_INPUT,
-                      "%s: its coarsest cloud has %zu Gaussians in sight, more than may be drawn", c->levels->name,
-                      c->n);
+    return refuse_few(all, high);
   while (status == CONIC_OK && !is_over && low > least) {
     high = low;
     low = low > 1e-9 ? fmax(0.25 * low, least) : least;
-    status = cut_at(c, low, &is_over);
+    status = cut_at(all, low, &is_over);
   }
   if (!is_over)
     return status;
   while (status == CONIC_OK && high - low > high / 512.0) {
     const double middle = 0.5 * (low + high);
-    status = cut_at(c, middle, &is_over);
+    status = cut_at(all, middle, &is_over);
     *(is_over ? &low : &high) = middle;
   }
-  return status == CONIC_OK ? cut_at(c, high, &is_over) : status;
+  return status == CONIC_OK ? cut_at(all, high, &is_over) : status;
 }
 
 /* --- what is drawn --- */
@@ -274,53 +313,74 @@ static conic_status take_level(level_cutting *c, int level) {
   return status;
 }
 
-static conic_status choose_some(level_cutting *c, conic_levels_cut *cut) {
-  const conic_levels_wish *wish = c->wish;
-  const uint64_t memory = conic_levels_most(c->levels);
+static conic_status choose_some(level_cuttings *all, const conic_levels_wish *wish, uint64_t memory, int *is_short) {
   int is_over = 0;
   conic_status status = CONIC_OK;
-  c->most = wish->budget && wish->budget < memory ? wish->budget : memory;
+  all->most = wish->budget && wish->budget < memory ? wish->budget : memory;
   if (!wish->budget)
-    status = cut_at(c, wish->error, &is_over);
-  if (status == CONIC_OK && (wish->budget || is_over)) {
-    cut->is_short = !wish->budget;
-    status = find_error(c, wish->budget ? 0.0 : wish->error);
+    status = cut_at(all, wish->error, &is_over);
+  *is_short = status == CONIC_OK && is_over;
+  return status == CONIC_OK && (wish->budget || is_over) ? find_error(all, wish->budget ? 0.0 : wish->error) : status;
+}
+
+/* Drops the finest clouds, where memory is scarce. */
+static void drop_finest(const level_cuttings *all, uint64_t most) {
+  uint64_t n = 0;
+  for (size_t k = 0; k < all->n; k++)
+    for (uint32_t i = 0; i < all->list[k].levels->shape.n_clouds; i++)
+      n += all->list[k].levels->clouds[i].columns ? all->list[k].levels->entries[i].n : 0;
+  for (size_t k = 0; k < all->n; k++)
+    for (uint32_t i = all->list[k].levels->shape.n_clouds; i-- > 0 && n > most / 2;) {
+      n -= all->list[k].levels->clouds[i].columns ? all->list[k].levels->entries[i].n : 0;
+      conic_levels_drop(all->list[k].levels, i);
+    }
+}
+
+/* Takes or chooses of each scene. */
+static conic_status fill_cuts(level_cuttings *all, const conic_levels_wish *wish, uint64_t memory, int is_all) {
+  const int is_whole_level = is_all || wish->part == CONIC_LEVELS_ROOT;
+  int is_short = 0;
+  conic_status status = is_whole_level ? CONIC_OK : choose_some(all, wish, memory, &is_short);
+  for (size_t i = 0; i < all->n && status == CONIC_OK; i++) {
+    level_cutting *c = &all->list[i];
+    if (is_whole_level)
+      status = take_level(c, is_all ? c->levels->shape.n_levels - 1 : 0);
+    if (status == CONIC_OK)
+      status = fill_set(c, is_all, &c->scene->set);
+    c->scene->cut = (conic_levels_cut){c->error, c->n, c->n_merged, is_all, is_short};
   }
-  cut->error = c->error;
   return status;
 }
 
-/* Drops clouds that this picture did not show, where memory is scarce. */
-static void drop_others(level_cutting *c) {
-  conic_levels *l = c->levels;
-  uint64_t n = 0;
-  for (uint32_t i = 0; i < l->shape.n_clouds; i++)
-    n += l->clouds[i].columns ? l->entries[i].n : 0;
-  for (uint32_t i = 0; i < l->shape.n_clouds && n > conic_levels_most(l) / 2; i++)
-    conic_levels_drop(l, i);
-}
-
-conic_status conic_levels_choose(conic_levels *levels, const conic_levels_wish *wish, conic_gaussians *set,
-                                 conic_levels_cut *cut) {
-  conic_context *context = levels->context;
-  level_cutting c = {.levels = levels, .wish = wish, .focal = fmax(wish->camera.fx, wish->camera.fy)};
-  const int is_root = wish->part == CONIC_LEVELS_ROOT;
+conic_status conic_levels_choose(conic_levels_scene *scenes, size_t n, const conic_levels_wish *wish) {
+  conic_context *context = scenes[0].levels->context;
+  level_cuttings all = {.list = conic_memory_allocate_zeroed(context, n, sizeof *all.list), .n = n};
+  conic_status status = all.list ? CONIC_OK : CONIC_ERROR_MEMORY;
+  const uint64_t memory = conic_levels_most(scenes, n);
+  uint64_t n_all = 0;
+  for (size_t i = 0; i < n; i++)
+    n_all += scenes[i].levels->header.n;
   const int is_all = wish->part == CONIC_LEVELS_ALL ||
-                     (!is_root && wish->error == 0.0 && !wish->budget && levels->header.n <= conic_levels_most(levels));
-  memset(cut, 0, sizeof *cut);
-  c.is_plain = wish->camera.kind == CONIC_CAMERA_PERSPECTIVE && wish->camera.lens == CONIC_LENS_NONE;
-  if (!is_all && !is_root)
-    conic_viewpoint_init(&c.from, &wish->camera, levels->header.origin, margin_px);
-  conic_status status = conic_memory_allocate_these(context, CONIC_ROOM(c.clouds[0], levels->shape.n_clouds),
-                                                    CONIC_ROOM(c.clouds[1], levels->shape.n_clouds));
+                     (wish->part == CONIC_LEVELS_CUT && wish->error == 0.0 && !wish->budget && n_all <= memory);
+  for (size_t i = 0; i < n && status == CONIC_OK; i++) {
+    const conic_camera *camera = &scenes[i].camera;
+    level_cutting *c = &all.list[i];
+    *c = (level_cutting){.scene = &scenes[i],
+                         .levels = scenes[i].levels,
+                         .wish = wish,
+                         .focal = fmax(camera->fx, camera->fy),
+                         .is_plain = camera->kind == CONIC_CAMERA_PERSPECTIVE && camera->lens == CONIC_LENS_NONE};
+    if (!is_all && wish->part == CONIC_LEVELS_CUT)
+      conic_viewpoint_init(&c->from, camera, c->levels->header.origin, margin_px);
+    status = conic_memory_allocate_these(context, CONIC_ROOM(c->clouds[0], c->levels->shape.n_clouds),
+                                         CONIC_ROOM(c->clouds[1], c->levels->shape.n_clouds));
+  }
   if (status == CONIC_OK)
-    status = is_all || is_root ? take_level(&c, is_root ? 0 : levels->shape.n_levels - 1) : choose_some(&c, cut);
+    status = fill_cuts(&all, wish, memory, is_all);
+  for (size_t i = 0; i < n && all.list; i++)
+    conic_memory_release_these(context, all.list[i].clouds[0], all.list[i].clouds[1], all.list[i].list);
   if (status == CONIC_OK)
-    status = fill_set(&c, is_all, set);
-  cut->is_all = is_all;
-  cut->n = c.n;
-  cut->n_merged = c.n_merged;
-  conic_memory_release_these(context, c.clouds[0], c.clouds[1], c.list);
-  drop_others(&c);
+    drop_finest(&all, memory);
+  conic_memory_release(context, all.list);
   return status;
 }

@@ -168,13 +168,13 @@ conic_status conic_levels_load(conic_levels *levels, const uint32_t *clouds, siz
 
 conic_status conic_levels_read(conic_context *context, const char *path, conic_gaussians *set) {
   const conic_levels_wish all = {.part = CONIC_LEVELS_ALL};
-  conic_levels *levels;
-  conic_levels_cut cut;
-  memset(set, 0, sizeof *set);
-  conic_status status = conic_levels_open(context, path, NULL, &levels);
+  conic_levels_scene scene;
+  memset(&scene, 0, sizeof scene);
+  conic_status status = conic_levels_open(context, path, NULL, &scene.levels);
   if (status == CONIC_OK)
-    status = conic_levels_choose(levels, &all, set, &cut);
-  conic_levels_close(levels);
+    status = conic_levels_choose(&scene, 1, &all);
+  conic_levels_close(scene.levels);
+  *set = scene.set;
   return status;
 }
 

@@ -36,9 +36,6 @@ void conic_levels_close(conic_levels *levels);
 conic_status conic_levels_load(conic_levels *levels, const uint32_t *clouds, size_t n);
 void conic_levels_drop(conic_levels *levels, uint32_t cloud);
 
-/* How many Gaussians can be drawn in the memory that there is. */
-uint64_t conic_levels_most(const conic_levels *levels);
-
 /* So many are read whole for framing, as other scenes are; of more, what stands at the root tells where they are. */
 enum { CONIC_LEVELS_MOST_WHOLE = 1 << 18 };
 
@@ -55,9 +52,8 @@ typedef struct conic_levels_veil {
 
 typedef struct conic_levels_wish {
   conic_levels_part part;
-  conic_camera camera;
   double error;    /* 0: all, or as the budget and memory allow */
-  uint64_t budget; /* 0: none */
+  uint64_t budget; /* of all scenes together; 0: none */
   double dilation; /* px² that are added to variances, where what is added is not taken from the opacity */
   const conic_levels_veil *veil; /* null: all light is left everywhere */
 } conic_levels_wish;
@@ -68,9 +64,21 @@ typedef struct conic_levels_cut {
   int is_all, is_short; /* all that there is; is_short: the memory made it coarser than it was to be */
 } conic_levels_cut;
 
-/* Chooses Gaussians; the caller releases them. Errors: as conic_levels_load. */
-conic_status conic_levels_choose(conic_levels *levels, const conic_levels_wish *wish, conic_gaussians *set,
-                                 conic_levels_cut *cut);
+/* One of the scenes of a picture. */
+typedef struct conic_levels_scene {
+  conic_levels *levels;
+  conic_camera camera; /* as the file sees it */
+  double unit;         /* a length there is so long in the veil's space */
+  conic_gaussians set; /* what is chosen; the caller releases it */
+  conic_levels_cut cut;
+} conic_levels_scene;
+
+/* How many Gaussians of n scenes together can be drawn in the memory that there is. */
+uint64_t conic_levels_most(const conic_levels_scene *scenes, size_t n);
+
+/* Chooses Gaussians of n scenes by one error, also where a budget or the memory sets it. Errors: as conic_levels_load,
+ * and INPUT (the least that a picture can have of them is more than may be drawn). */
+conic_status conic_levels_choose(conic_levels_scene *scenes, size_t n, const conic_levels_wish *wish);
 
 /* Reads all of a file as a scene. Errors: as conic_levels_open. */
 conic_status conic_levels_read(conic_context *context, const char *path, conic_gaussians *set);

@@ -489,12 +489,11 @@ conic_status conic_gaussians_source_draw(conic_source *source, conic_renderer *r
                         : composite_whole(source, renderer, camera, render, view->samples, NULL, image, statistics);
 }
 
-conic_levels_wish conic_gaussians_source_wish(const conic_gaussians_source *source, const conic_camera *camera) {
+conic_levels_wish conic_gaussians_source_wish(const conic_gaussians_source *source) {
   const conic_source_view *view = &source->base.view;
   const conic_profile_row *row = conic_profile_row_of(source->options.profile);
   const double samples = (double)view->samples;
-  return (conic_levels_wish){.camera = *camera,
-                             .error = view->error_px,
+  return (conic_levels_wish){.error = view->error_px,
                              .budget = view->budget,
                              .dilation = row->compensation_least < 0.0 ? row->dilation / (samples * samples) : 0.0};
 }

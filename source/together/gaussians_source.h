@@ -13,7 +13,7 @@ typedef struct conic_among_input {
   conic_place place;
   conic_levels *levels; /* of a scene in levels; else null */
   conic_levels_cut cut; /* of these */
-  conic_gaussians set;  /* of each scene, where one of them is in levels: what is drawn of it, where it stands */
+  conic_gaussians set;  /* of a scene that is not in levels, beside one that is */
   int is_lent;          /* the set is a caller's */
 } conic_among_input;
 
@@ -42,12 +42,18 @@ conic_status conic_gaussians_source_draw(conic_source *source, conic_renderer *r
                                          const conic_render_options *render, const conic_source_view *view,
                                          conic_image *image, conic_render_statistics *statistics);
 /* What a picture of levels by the source's view and profile wishes. */
-conic_levels_wish conic_gaussians_source_wish(const conic_gaussians_source *source, const conic_camera *camera);
+conic_levels_wish conic_gaussians_source_wish(const conic_gaussians_source *source);
 
-/* conic_levels_choose with a veil, for cameras whose sides are known. Errors: as there, and of drawing. */
-conic_status conic_levels_choose_seen(conic_levels *levels, const conic_levels_wish *wish,
-                                      const conic_gaussian_options *options, conic_gaussians *set,
-                                      conic_levels_cut *cut);
+/* What a small picture shows, of which a veil is found. */
+conic_levels_wish conic_levels_coarser(const conic_levels_wish *wish, const conic_levels_scene *scenes, size_t n,
+                                       const conic_gaussian_options *options);
+/* Finds the veil of what that is. The caller releases its depths, on failure too. Errors: as of drawing. */
+conic_status conic_levels_find_veil(conic_context *context, const conic_gaussians *set, const conic_camera *camera,
+                                    const conic_gaussian_options *options, conic_levels_veil *veil);
+
+/* A source of several inputs, or of one in levels. */
+conic_status conic_together_open(conic_source *source, const char *const *paths, size_t n_paths,
+                                 const conic_source_options *options);
 
 /* Tells of n inputs, as far as they are in levels. */
 void conic_levels_tell(const conic_among_input *inputs, size_t n, conic_facts *facts);

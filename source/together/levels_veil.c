@@ -38,48 +38,33 @@ static conic_camera veil_camera(const conic_camera *of, const conic_profile_row 
   return camera;
 }
 
-static conic_status find_veil(conic_levels *levels, const conic_levels_wish *wish,
-                              const conic_gaussian_options *options, conic_levels_veil *veil) {
-  const conic_profile_row *row = conic_profile_row_of(options->profile);
-  const uint64_t root = levels->entries[0].n, most = wish->budget ? wish->budget : conic_levels_most(levels);
+conic_levels_wish conic_levels_coarser(const conic_levels_wish *wish, const conic_levels_scene *scenes, size_t n,
+                                       const conic_gaussian_options *options) {
+  const uint64_t most = wish->budget ? wish->budget : conic_levels_most(scenes, n);
   conic_levels_wish coarse = *wish;
-  conic_gaussian_options own = *options;
-  conic_gaussian_walk walk;
-  conic_gaussians set;
-  conic_levels_cut cut;
-  own.device = NULL;
+  uint64_t least = 0;
+  for (size_t i = 0; i < n; i++)
+    least += scenes[i].levels->entries[0].n;
   coarse.error *= COARSER;
   if (coarse.error == 0.0)
-    coarse.budget = most / COARSER > root ? most / COARSER : root;
-  coarse.dilation = wish->dilation > 0.0 ? row->dilation * ACROSS * ACROSS : 0.0;
-  memset(&set, 0, sizeof set);
-  veil->camera = veil_camera(&wish->camera, row);
-  veil->depths = conic_memory_allocate(levels->context, (size_t)veil->camera.width * (size_t)veil->camera.height,
-                                       CONIC_VEIL_HALVES * sizeof *veil->depths);
-  conic_status status = veil->depths ? conic_levels_choose(levels, &coarse, &set, &cut) : CONIC_ERROR_MEMORY;
-  if (status == CONIC_OK) {
-    status = conic_gaussian_walk_begin(levels->context, &set, &veil->camera, &own, NULL, &walk);
-    if (status == CONIC_OK)
-      status = conic_gaussian_walk_run(&walk, note_band, veil);
-    conic_gaussian_walk_release(&walk);
-  }
-  conic_gaussians_release(levels->context, &set);
-  return status;
+    coarse.budget = most / COARSER > least ? most / COARSER : least < most ? least : most;
+  coarse.dilation = wish->dilation > 0.0 ? conic_profile_row_of(options->profile)->dilation * ACROSS * ACROSS : 0.0;
+  return coarse;
 }
 
-conic_status conic_levels_choose_seen(conic_levels *levels, const conic_levels_wish *wish,
-                                      const conic_gaussian_options *options, conic_gaussians *set,
-                                      conic_levels_cut *cut) {
-  conic_levels_veil veil = {.depths = NULL};
-  conic_levels_wish own = *wish;
-  const int is_all = wish->error == 0.0 && !wish->budget && levels->header.n <= conic_levels_most(levels);
-  conic_status status = CONIC_OK;
-  if (wish->part == CONIC_LEVELS_CUT && !is_all && wish->camera.kind == CONIC_CAMERA_PERSPECTIVE &&
-      wish->camera.lens == CONIC_LENS_NONE)
-    status = find_veil(levels, wish, options, &veil);
-  own.veil = veil.depths ? &veil : NULL;
+conic_status conic_levels_find_veil(conic_context *context, const conic_gaussians *set, const conic_camera *camera,
+                                    const conic_gaussian_options *options, conic_levels_veil *veil) {
+  conic_gaussian_options own = *options;
+  conic_gaussian_walk walk;
+  own.device = NULL;
+  veil->camera = veil_camera(camera, conic_profile_row_of(options->profile));
+  veil->depths = conic_memory_allocate(context, (size_t)veil->camera.width * (size_t)veil->camera.height,
+                                       CONIC_VEIL_HALVES * sizeof *veil->depths);
+  if (!veil->depths)
+    return CONIC_ERROR_MEMORY;
+  conic_status status = conic_gaussian_walk_begin(context, set, &veil->camera, &own, NULL, &walk);
   if (status == CONIC_OK)
-    status = conic_levels_choose(levels, &own, set, cut);
-  conic_memory_release(levels->context, veil.depths);
+    status = conic_gaussian_walk_run(&walk, note_band, veil);
+  conic_gaussian_walk_release(&walk);
   return status;
 }

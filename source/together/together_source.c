@@ -87,10 +87,12 @@ static conic_status place_scene(conic_context *context, const conic_place *place
 
 static conic_status choose_levels_among(conic_source *source, const conic_camera *camera);
 
-/* The sets of the inputs that are scenes, as one list. */
+/* The sets of the inputs that are scenes, as one list; those of levels are handed over. */
 static conic_status join_inputs(conic_gaussians_source *g, conic_gaussians *all) {
   conic_gaussians *sets = conic_memory_allocate(g->base.context, g->n_inputs, sizeof *sets);
+  conic_among_input *one = NULL; /* in levels, and the last */
   size_t n = 0, count = 0;
+  conic_status status = CONIC_OK;
   if (!sets)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < g->n_inputs; i++) {
@@ -99,8 +101,16 @@ static conic_status join_inputs(conic_gaussians_source *g, conic_gaussians *all)
     g->inputs[i].first_id = (uint32_t)count;
     count += g->inputs[i].set.count;
     sets[n++] = g->inputs[i].set;
+    one = g->inputs[i].levels ? &g->inputs[i] : NULL;
   }
-  conic_status status = join_scenes(g->base.context, sets, n, all);
+  if (n == 1 && one) { /* large scenes are not copied */
+    *all = one->set;
+    memset(&one->set, 0, sizeof one->set);
+  } else
+    status = join_scenes(g->base.context, sets, n, all);
+  for (size_t i = 0; i < g->n_inputs; i++)
+    if (g->inputs[i].levels)
+      conic_gaussians_release(g->base.context, &g->inputs[i].set);
   conic_memory_release(g->base.context, sets);
   return status;
 }
@@ -112,14 +122,18 @@ static const conic_among_input *first_scene(const conic_gaussians_source *g) {
   return first;
 }
 
-/* Takes what a picture shows of a scene in levels, in the first one's frame. */
-static conic_status take_levels(conic_gaussians_source *g, conic_among_input *input, const conic_levels_wish *wish) {
-  const char *frame = input == first_scene(g) ? input->levels->header.frame : first_scene(g)->set.frame;
-  char kept[4];
-  memcpy(kept, frame, sizeof kept); /* which may be the set's own */
+/* The frame of all scenes, which is the first one's. */
+static const char *frame_of_all(const conic_gaussians_source *g) {
+  const conic_among_input *first = first_scene(g);
+  return first->levels ? first->levels->header.frame : first->set.frame;
+}
+
+/* Puts what was chosen of a scene in levels where it stands. */
+static conic_status put_scene(conic_gaussians_source *g, conic_among_input *input, const conic_levels_scene *scene) {
   conic_gaussians_release(g->base.context, &input->set);
-  conic_status status = conic_levels_choose_seen(input->levels, wish, &g->options, &input->set, &input->cut);
-  return status == CONIC_OK ? place_scene(g->base.context, &input->place, kept, &input->set, &input->is_lent) : status;
+  input->set = scene->set;
+  input->cut = scene->cut;
+  return place_scene(g->base.context, &input->place, frame_of_all(g), &input->set, &input->is_lent);
 }
 
 static conic_status open_input(conic_gaussians_source *g, conic_among_input *input, const char *path,
@@ -127,9 +141,8 @@ static conic_status open_input(conic_gaussians_source *g, conic_among_input *inp
   conic_context *context = g->base.context;
   if (!conic_levels_is_file(path) || conic_loan_find(context, path, "gaussians")) {
     conic_status status = read_scene(context, path, &input->set, &input->is_lent);
-    return status == CONIC_OK
-               ? place_scene(context, &input->place, first_scene(g)->set.frame, &input->set, &input->is_lent)
-               : status;
+    return status == CONIC_OK ? place_scene(context, &input->place, frame_of_all(g), &input->set, &input->is_lent)
+                              : status;
   }
   conic_status status = conic_levels_open(context, path, options->access, &input->levels);
   if (status != CONIC_OK)
@@ -137,8 +150,10 @@ static conic_status open_input(conic_gaussians_source *g, conic_among_input *inp
   const conic_levels_wish wish = {.part = options->is_whole || input->levels->header.n <= CONIC_LEVELS_MOST_WHOLE
                                               ? CONIC_LEVELS_ALL
                                               : CONIC_LEVELS_ROOT};
+  conic_levels_scene scene = {.levels = input->levels};
   g->base.choice.is_all &= wish.part == CONIC_LEVELS_ALL;
-  return take_levels(g, input, &wish);
+  status = conic_levels_choose(&scene, 1, &wish);
+  return status == CONIC_OK ? put_scene(g, input, &scene) : status;
 }
 
 static void release_sets(conic_gaussians_source *g) {
@@ -223,8 +238,8 @@ static void join_scales(conic_gaussians_source *g) {
   g->base.coloring = g->surfaces->coloring;
 }
 
-static conic_status open_together(conic_source *source, const char *const *paths, size_t n_paths,
-                                  const conic_source_options *options) {
+conic_status conic_together_open(conic_source *source, const char *const *paths, size_t n_paths,
+                                 const conic_source_options *options) {
   conic_gaussians_source *g = (conic_gaussians_source *)source;
   g->options = *options->gaussians;
   g->n_inputs = n_paths;
@@ -284,7 +299,7 @@ static conic_camera camera_of(const conic_gaussians_source *g, const conic_among
   const conic_place *place = &input->place;
   double turn[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
   const double scale = place->is_moved ? place->scale : 1.0;
-  conic_gaussians_find_turn(input->levels->header.frame, first_scene(g)->set.frame, turn);
+  conic_gaussians_find_turn(input->levels->header.frame, frame_of_all(g), turn);
   for (int row = 0; row < 3; row++) {
     const double *from = camera->cam_from_world[row];
     double placed[3] = {from[0], from[1], from[2]}, shift = from[3];
@@ -300,51 +315,90 @@ static conic_camera camera_of(const conic_gaussians_source *g, const conic_among
   return own;
 }
 
-/* What is left of a budget for the one scene in levels. */
+/* What scenes without levels leave of a budget. */
 static conic_status share_budget(const conic_gaussians_source *g, uint64_t *budget) {
-  size_t n_levels = 0;
   uint64_t others = 0;
-  for (size_t i = 0; i < g->n_inputs; i++) {
-    n_levels += g->inputs[i].levels != NULL;
+  for (size_t i = 0; i < g->n_inputs; i++)
     others += g->inputs[i].levels ? 0 : g->inputs[i].set.count;
-  }
-  if (*budget && (n_levels > 1 || others >= *budget))
-    return conic_fail(g->base.context, CONIC_ERROR_UNSUPPORTED,
-                      n_levels > 1 ? "%s: a budget is of one scene in levels; --error is of several"
-                                   : "%s: the scenes without levels are more than the budget",
-                      g->base.name);
+  if (*budget && others >= *budget)
+    return conic_fail(g->base.context, CONIC_ERROR_INPUT,
+                      "%s: the scenes without levels have %llu Gaussians, and the budget is %llu", g->base.name,
+                      (unsigned long long)others, (unsigned long long)*budget);
   *budget -= *budget ? others : 0;
   return CONIC_OK;
 }
 
+/* Takes of the scenes in levels what is wished, and makes one list of all scenes. */
+static conic_status take_scenes(conic_gaussians_source *g, conic_levels_scene *scenes, size_t n,
+                                const conic_levels_wish *wish, conic_gaussians *all) {
+  conic_status status = conic_levels_choose(scenes, n, wish);
+  for (size_t i = 0, k = 0; i < g->n_inputs; i++) {
+    if (!g->inputs[i].levels)
+      continue;
+    if (status == CONIC_OK)
+      status = put_scene(g, &g->inputs[i], &scenes[k]);
+    else
+      conic_gaussians_release(g->base.context, &scenes[k].set);
+    memset(&scenes[k++].set, 0, sizeof scenes->set);
+  }
+  return status == CONIC_OK ? join_inputs(g, all) : status;
+}
+
+/* Takes what a picture shows. Of pinholes a small picture of less says first what is hidden. */
+static conic_status take_seen(conic_gaussians_source *g, const conic_camera *camera, conic_levels_wish *wish,
+                              conic_levels_scene *scenes, size_t n) {
+  conic_context *context = g->base.context;
+  conic_levels_veil veil = {.depths = NULL};
+  conic_status status = CONIC_OK;
+  uint64_t n_all = 0;
+  for (size_t i = 0; i < n; i++)
+    n_all += scenes[i].levels->header.n;
+  const int is_all = wish->error == 0.0 && !wish->budget && n_all <= conic_levels_most(scenes, n);
+  conic_gaussians_release(context, &g->gaussians);
+  if (!is_all && camera->kind == CONIC_CAMERA_PERSPECTIVE && camera->lens == CONIC_LENS_NONE) {
+    const conic_levels_wish coarse = conic_levels_coarser(wish, scenes, n, &g->options);
+    status = take_scenes(g, scenes, n, &coarse, &g->gaussians);
+    if (status == CONIC_OK)
+      status = conic_levels_find_veil(context, &g->gaussians, camera, &g->options, &veil);
+    conic_gaussians_release(context, &g->gaussians);
+  }
+  wish->veil = veil.depths ? &veil : NULL;
+  if (status == CONIC_OK)
+    status = take_scenes(g, scenes, n, wish, &g->gaussians);
+  conic_memory_release(context, veil.depths);
+  return status;
+}
+
 static conic_status choose_levels_among(conic_source *source, const conic_camera *camera) {
   conic_gaussians_source *g = (conic_gaussians_source *)source;
-  conic_levels_wish wish = conic_gaussians_source_wish(g, camera);
-  conic_source_choice choice = {.is_all = 1};
-  conic_gaussians all;
+  conic_levels_wish wish = conic_gaussians_source_wish(g);
+  size_t n = 0;
   if (source->choice.is_all && wish.error == 0.0 && !wish.budget)
     return CONIC_OK;
   if (g->rest.count)
     return conic_fail(source->context, CONIC_ERROR_UNSUPPORTED, "%s: what moves is drawn whole: not by an error",
                       source->name);
-  conic_status status = share_budget(g, &wish.budget);
-  for (size_t i = 0; i < g->n_inputs && status == CONIC_OK; i++) {
-    conic_among_input *input = &g->inputs[i];
-    if (!input->levels)
-      continue;
-    wish.camera = camera_of(g, input, camera);
-    status = take_levels(g, input, &wish);
-    choice.error_px = fmax(choice.error_px, input->cut.error);
-    choice.is_all &= input->cut.is_all;
+  conic_levels_scene *scenes = conic_memory_allocate_zeroed(source->context, g->n_inputs, sizeof *scenes);
+  for (size_t i = 0; i < g->n_inputs && scenes; i++) {
+    const conic_among_input *input = &g->inputs[i];
+    if (input->levels)
+      scenes[n++] = (conic_levels_scene){.levels = input->levels,
+                                         .camera = camera_of(g, input, camera),
+                                         .unit = input->place.is_moved ? input->place.scale : 1.0};
   }
+  conic_status status = scenes ? share_budget(g, &wish.budget) : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK)
-    status = join_inputs(g, &all);
-  if (status != CONIC_OK)
-    return status;
-  conic_gaussians_release(source->context, &g->gaussians);
-  g->gaussians = all;
-  source->choice = choice;
-  return CONIC_OK;
+    status = take_seen(g, camera, &wish, scenes, n);
+  if (status == CONIC_OK) {
+    const conic_levels_cut *cut = &scenes->cut; /* its error is that of all */
+    source->choice = (conic_source_choice){.error_px = cut->error, .is_all = cut->is_all};
+    if (cut->is_short && wish.error == 0.0) /* else the program says so */
+      conic_log(source->context, CONIC_LOG_WARNING,
+                "%s: drawn by an error of %.3g, as no more than %llu Gaussians fit into the memory that it may take",
+                source->name, cut->error, (unsigned long long)conic_levels_most(scenes, n));
+  }
+  conic_memory_release(source->context, scenes);
+  return status;
 }
 
 /* --- what moves --- */
@@ -471,7 +525,7 @@ static conic_status move_together(conic_source *source, const conic_source_pose 
     .tell_rest = conic_gaussians_source_tell                                                                           \
   }
 #define KIND_OF_MANY(its_abilities, its_company, its_wants)                                                            \
-  KIND_OF_GAUSSIANS(its_abilities, its_company, open_together, find_input, move_together, its_wants)
+  KIND_OF_GAUSSIANS(its_abilities, its_company, conic_together_open, find_input, move_together, its_wants)
 
 const conic_source_kind conic_source_kind_gaussians =
                             KIND_OF_GAUSSIANS(0, CONIC_SOURCE_SINGLE, open_scene, NULL, NULL, NULL),

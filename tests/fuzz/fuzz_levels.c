@@ -8,30 +8,27 @@
 /* Checks every cloud, then takes all, and what a picture shows. */
 static void open_and_use(const uint8_t *bytes, size_t n_bytes) {
   fuzz_input input = fuzz_open(bytes, n_bytes);
-  conic_levels *levels;
+  conic_levels_scene scene = {.camera = {.width = 64,
+                                         .height = 64,
+                                         .fx = 64.0,
+                                         .fy = 64.0,
+                                         .cx = 32.0,
+                                         .cy = 32.0,
+                                         .cam_from_world = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 9}}}};
   uint64_t found[2];
-  conic_status status = conic_levels_open(input.context, input.path, NULL, &levels);
+  conic_status status = conic_levels_open(input.context, input.path, NULL, &scene.levels);
   if (status == CONIC_OK) {
-    FUZZ_CHECK(conic_levels_check(levels, &found[0], &found[1]) == CONIC_OK);
+    FUZZ_CHECK(conic_levels_check(scene.levels, &found[0], &found[1]) == CONIC_OK);
     for (int i = 0; i < 3; i++) {
-      const conic_levels_wish wish = {.part = i == 0 ? CONIC_LEVELS_ALL : CONIC_LEVELS_CUT,
-                                      .camera = {.width = 64,
-                                                 .height = 64,
-                                                 .fx = 64.0,
-                                                 .fy = 64.0,
-                                                 .cx = 32.0,
-                                                 .cy = 32.0,
-                                                 .cam_from_world = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 9}}},
-                                      .error = i == 1 ? 0.5 : 0.0,
-                                      .budget = i == 2 ? 40 : 0};
-      conic_levels_cut cut;
-      conic_gaussians set = {.count = 0};
-      const conic_status chosen = conic_levels_choose(levels, &wish, &set, &cut);
+      const conic_levels_wish wish = {
+          .part = i == 0 ? CONIC_LEVELS_ALL : CONIC_LEVELS_CUT, .error = i == 1 ? 0.5 : 0.0, .budget = i == 2 ? 40 : 0};
+      memset(&scene.set, 0, sizeof scene.set);
+      const conic_status chosen = conic_levels_choose(&scene, 1, &wish);
       FUZZ_CHECK(chosen == CONIC_OK || chosen == CONIC_ERROR_INPUT || chosen == CONIC_ERROR_MEMORY);
-      conic_gaussians_release(input.context, &set);
+      conic_gaussians_release(input.context, &scene.set);
     }
   }
-  conic_levels_close(levels);
+  conic_levels_close(scene.levels);
   FUZZ_CHECK(status == CONIC_OK || status == CONIC_ERROR_INPUT || status == CONIC_ERROR_UNSUPPORTED);
   close(input.descriptor);
 }

@@ -47,7 +47,24 @@ done
 run 0 render balls.lpc sphere.ply --profile exact --size 96x96 --budget 700 -o few.pfm --json few.json
 (($(number gaussians few.json) <= 700 && $(number gaussians_merged few.json) > 0)) || fail "--budget among surfaces"
 run 0 verify balls.lpc sphere.ply --profile exact --size 64x64 --budget 700 --samples 1
-run 4 render balls.lpc balls.ply --profile exact --size 96x96 --budget 700 -o no.pfm
+run 3 render balls.lpc balls.ply --profile exact --size 96x96 --budget 700 -o no.pfm
+grep -q 'without levels have 3000 Gaussians, and the budget is 700' err || fail "others over a budget: $(cat err)"
+
+# A budget of several scenes is of all together, by one error; what is too little for the coarsest says how much is not.
+run 0 render balls.lpc again.lpc --profile exact --size 96x96 --budget 900 -o few.pfm --json few.json \
+  --place again.lpc=4,0,0 --threads 3
+(($(number gaussians few.json) <= 900 && $(number gaussians few.json) > 600)) || fail "a budget of two scenes"
+run 0 render balls.lpc again.lpc --profile exact --size 96x96 --budget 900 -o other.pfm --place again.lpc=4,0,0 --threads 1
+cmp -s few.pfm other.pfm || fail "threads change a bit of what shares a budget"
+for scenes in balls.lpc "balls.lpc again.lpc"; do
+  # shellcheck disable=SC2086
+  run 3 render $scenes --profile exact --size 96x96 --budget 3 -o no.pfm
+  least=$(sed -nE 's/.*its coarsest picture has ([0-9]+) Gaussians, and the budget is 3$/\1/p' err)
+  [[ -n $least ]] || fail "a budget that is too small: $(cat err)"
+  # shellcheck disable=SC2086
+  run 0 render $scenes --profile exact --size 96x96 --budget "$least" -o few.pfm --json few.json
+  [[ $(number gaussians few.json) == "$least" ]] || fail "the least of $scenes is not $least"
+done
 run 2 render balls.lpc --profile exact --size 96x96 --aov bound -o no.pfm
 run 2 render balls.lpc --profile exact --size 96x96 --error 1 --accumulate 2 --aov bound -o no.pfm
 bounded() { # SIZE ARGUMENTS: no pixel is off by more than the plane says, and no plane says more than the JSON

@@ -158,23 +158,66 @@ static void draw(conic_context *context, const conic_gaussians *set, double dist
   }
 }
 
+static conic_levels_cut choose(conic_levels_scene *scene, const conic_levels_wish *wish, conic_camera camera,
+                               conic_gaussians *set) {
+  scene->camera = camera;
+  CHECK_OK(conic_levels_choose(scene, 1, wish));
+  *set = scene->set;
+  return scene->cut;
+}
+
+/* Two scenes share one budget by one error, which is each one's alone; what is too little is told with its least. */
+static void budgets_shared(conic_context *context) {
+  conic_gaussians scene = sheet(context);
+  conic_levels_statistics statistics;
+  conic_levels_scene scenes[2];
+  uint64_t n[2];
+  memset(scenes, 0, sizeof scenes);
+  CHECK_OK(build(context, files_path("sheet.lpc"), &scene, 64, 1 << 26, &statistics));
+  for (int i = 0; i < 2; i++) {
+    CHECK_OK(conic_levels_open(context, files_path("sheet.lpc"), NULL, &scenes[i].levels));
+    scenes[i].camera = camera_before(SIDE, i ? 5.0 : 3.0);
+  }
+  for (uint64_t budget = 200; budget < 1600; budget *= 3) {
+    const conic_levels_wish wish = {.budget = budget};
+    CHECK_OK(conic_levels_choose(scenes, 2, &wish));
+    const conic_levels_wish same = {.error = scenes[0].cut.error};
+    CHECK(scenes[0].cut.error == scenes[1].cut.error && scenes[0].cut.n + scenes[1].cut.n <= budget);
+    CHECK(scenes[0].cut.n + scenes[1].cut.n > budget / 2 && scenes[0].cut.n > scenes[1].cut.n);
+    for (int i = 0; i < 2; i++) {
+      n[i] = scenes[i].cut.n;
+      conic_gaussians_release(context, &scenes[i].set);
+      CHECK_OK(conic_levels_choose(&scenes[i], 1, &same));
+      CHECK(scenes[i].cut.n == n[i]);
+      conic_gaussians_release(context, &scenes[i].set);
+    }
+  }
+  const conic_levels_wish few = {.budget = 3};
+  CHECK(conic_levels_choose(scenes, 2, &few) == CONIC_ERROR_INPUT);
+  conic_levels_close(scenes[0].levels);
+  conic_levels_close(scenes[1].levels);
+  CHECK(unlink(files_path("sheet.lpc")) == 0);
+  conic_gaussians_release(context, &scene);
+}
+
 /* No pixel is over the bound that the cut states, nor any more are drawn than the budget says. */
 static void bounds_hold(conic_context *context) {
   conic_gaussians scene = sheet(context), set;
   conic_levels_statistics statistics;
   conic_levels_cut cut;
-  conic_levels *levels;
+  conic_levels_scene one;
   static float truth[3 * SIDE * SIDE], pixels[3 * SIDE * SIDE];
   const double distance = 3.0;
   CHECK_OK(build(context, files_path("sheet.lpc"), &scene, 64, 1 << 26, &statistics));
-  CHECK_OK(conic_levels_open(context, files_path("sheet.lpc"), NULL, &levels));
+  memset(&one, 0, sizeof one);
+  CHECK_OK(conic_levels_open(context, files_path("sheet.lpc"), NULL, &one.levels));
   draw(context, &scene, distance, truth);
   uint64_t n_before = scene.count + 1;
   for (int i = 0; i < 5; i++) {
     const double errors[5] = {1e-9, 0.1, 0.2, 0.4, 0.8};
-    const conic_levels_wish wish = {.camera = camera_before(SIDE, distance), .error = errors[i]};
+    const conic_levels_wish wish = {.error = errors[i]};
     double most = 0.0;
-    CHECK_OK(conic_levels_choose(levels, &wish, &set, &cut));
+    cut = choose(&one, &wish, camera_before(SIDE, distance), &set);
     draw(context, &set, distance, pixels);
     for (int k = 0; k < 3 * SIDE * SIDE; k++)
       most = fmax(most, fabs((double)(pixels[k] - truth[k])));
@@ -186,17 +229,17 @@ static void bounds_hold(conic_context *context) {
   }
   CHECK(n_before < scene.count / 2);
   for (uint64_t budget = 100; budget < 1600; budget *= 3) {
-    const conic_levels_wish wish = {.camera = camera_before(SIDE, distance), .budget = budget};
-    CHECK_OK(conic_levels_choose(levels, &wish, &set, &cut));
+    const conic_levels_wish wish = {.budget = budget};
+    cut = choose(&one, &wish, camera_before(SIDE, distance), &set);
     CHECK(cut.n <= budget && cut.n > budget / 2 && !cut.is_short);
     conic_gaussians_release(context, &set);
   }
   /* what is out of sight is not drawn, nor read */
-  const conic_levels_wish beside = {.camera = camera_before(SIDE, -3.0), .error = 0.01};
-  CHECK_OK(conic_levels_choose(levels, &beside, &set, &cut));
+  const conic_levels_wish beside = {.error = 0.01};
+  cut = choose(&one, &beside, camera_before(SIDE, -3.0), &set);
   CHECK(cut.n == 0);
   conic_gaussians_release(context, &set);
-  conic_levels_close(levels);
+  conic_levels_close(one.levels);
   CHECK(unlink(files_path("sheet.lpc")) == 0);
   conic_gaussians_release(context, &scene);
 }
@@ -245,6 +288,7 @@ int main(void) {
   dilation();
   round_trip(context);
   bounds_hold(context);
+  budgets_shared(context);
   spoiled(context);
   files_end(context);
   return check_result();
