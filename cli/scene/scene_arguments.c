@@ -363,7 +363,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"aov", CLI_PARSED, job, "LIST",
        "planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place in the "
        "world); cluster of hybrids; T, medianZ, inverseZ, last, doubt of Gaussian scenes; ao and shadow, what light "
-       "arrives; bound, how far a pixel by --error or --budget is off; motion, into .exr: pixels to the next frame, "
+       "arrives; bound, how far a pixel by --error or --budget is off, for which all is drawn, too; motion, into .exr: "
+       "pixels to the next frame, "
        "and to the one before; cryptomatte, into .exr: mattes by "
        "which each input, or each patch of a hybrid, is picked by its name "
        "in Nuke or Blender [rgba,Z]",

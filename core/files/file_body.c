@@ -177,6 +177,9 @@ conic_status conic_file_read_header(conic_context *context, const char *path, co
   if (n_bytes < CONIC_FILE_HEADER_BYTES)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: ends within its header (at byte %zu)", path, n_bytes);
   uint32_t version = conic_load_32(bytes + sizeof kind->magic);
+  if (kind->made_by && version < kind->version)
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: made by an older version; make it again with %s", path,
+                      kind->made_by);
   if (version != kind->version)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: version %u of the format is not known (at byte 8)", path,
                       (unsigned)version);

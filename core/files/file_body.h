@@ -36,6 +36,7 @@ typedef struct conic_file_kind {
   const conic_file_field *fields; /* the first is the version, a uint32_t */
   size_t n_fields;
   const char *(*fault)(const void *numbers); /* what is wrong in a header whose sum is right; or null */
+  const char *made_by; /* what makes it again, where files of an older version may be about; null: none are */
 } conic_file_kind;
 
 /* Whether a regular file that can be read begins as this kind does. */

@@ -16,7 +16,7 @@ enum { CONIC_BLEND_MOST_PARTS = 12 };
 
 /* What is known of the Gaussians that one stands for. */
 typedef struct conic_blend_parts {
-  float light;       /* by how much the one changes a colour or the opacity, times the area where, in square units */
+  float light;       /* the square of what the one changes, times the area where, in square units */
   float depth, edge; /* sums of their optical depths, and of these times the root of their projections' traces */
   float reach;       /* they lie so far from the mean at most */
   float tint[3];     /* their mean harmonics of degree 0, by optical depth */

@@ -10,6 +10,10 @@
 enum { DIRECTIONS = 7, SIDE = 9 };
 static const double half_width = 3.3, step = 6.6 / SIDE, safety = 1.25;
 
+/* What is behind is not known: how much the square of a change counts over black, over the whole's own colour, and
+ * where the opacity alone is looked at. */
+static const float over_black = 0.2f, over_own = 1.0f, of_opacity = 0.05f;
+
 /* A Gaussian on the screen: e^-(xx·x² + 2·xy·x·y + yy·y²)/2 about its mean. */
 typedef struct trace {
   double x, y, depth;
@@ -123,9 +127,12 @@ static void look_from(const screen *s, const conic_blend *parts, size_t n, conic
   for (size_t i = 0; i < n; i++)
     lay_down(&traces[i], &at);
   for (size_t i = 0; i < (size_t)SIDE * SIDE; i++) {
-    float change = fabsf(at.left[i] - alone.left[i]);
-    for (int c = 0; c < 3; c++)
-      change = fmaxf(change, fabsf(at.sum[c][i] - alone.sum[c][i]));
+    const float left = at.left[i] - alone.left[i];
+    float change = of_opacity * left * left;
+    for (int c = 0; c < 3; c++) {
+      const float light = at.sum[c][i] - alone.sum[c][i], over = light + left * own.color[c];
+      change += over_black * light * light + over_own * over * over;
+    }
     sum += (double)change;
   }
   whole->parts.light = fmaxf(whole->parts.light, (float)(sum * step * step * root));

@@ -6,7 +6,7 @@
 #include "core/splats/kernel.h"
 #include "lod/blends/blend.h"
 
-enum { NEAREST = 6, MOST_EDGES = 16 };
+enum { NEAREST = 8, MOST_EDGES = 24 };
 
 /* A Gaussian as an axis sees it. */
 typedef struct shadow {
@@ -34,6 +34,9 @@ static double overlap(const shadow *a, const shadow *b, double roots) {
   return roots / sqrt(det) * (double)conic_exp_negative((float)(-0.5 * q));
 }
 
+/* How much the square of an opacity counts beside that of a colour. */
+static const double of_opacity = 0.2;
+
 /* The squares of both, less those of one bell that has as much light and the same moments. */
 static double cost_from(const conic_blend *a, const conic_blend *b, int axis) {
   const shadow s[2] = {shadow_of(a, axis), shadow_of(b, axis)};
@@ -46,7 +49,7 @@ static double cost_from(const conic_blend *a, const conic_blend *b, int axis) {
       part * s[0].xy + rest * s[1].xy + between * dx * dy, part * s[0].yy + rest * s[1].yy + between * dy * dy};
   const double root = root_of(&m);
   const double level = root > 0.0 ? fmin(1.0, (o[0] * roots[0] + o[1] * roots[1]) / root) : 0.0;
-  double aa = 1.0, ab = 1.0, bb = 1.0, am = 1.0, bm = 1.0, mm = 1.0;
+  double aa = of_opacity, ab = aa, bb = aa, am = aa, bm = aa, mm = aa;
   for (int c = 0; c < 3; c++) {
     const double cm = part * a->color[c] + rest * b->color[c];
     aa += a->color[c] * a->color[c];

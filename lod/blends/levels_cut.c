@@ -14,6 +14,9 @@ static const double margin_px = 4.0;
 /* No more pixels of a veil are looked at to each side. */
 static const double most_around = 8.0;
 
+/* The root of the sum of the squares that an error in pixels allows is an eighth of it. */
+static const double per_root = 8.0;
+
 typedef struct chosen {
   uint32_t cloud, i;
 } chosen;
@@ -83,10 +86,11 @@ static int look_at(const level_cutting *c, const float mean[3], double reach, do
   return !c->is_plain || (!conic_viewpoint_misses(&c->from, p, reach) && p[2] + reach > 0.0);
 }
 
-/* The most that is left of the light anywhere within a deviation of what reaches so far, and may be merged. */
+/* What is left of the light within a deviation of what reaches so far, and may be merged: the root of the mean square.
+ */
 static double find_left(const level_cutting *c, const float mean[3], double reach) {
   const conic_levels_veil *veil = c->wish->veil;
-  double p[3], most = 0.0;
+  double p[3], sum = 0.0, n = 0.0;
   if (!veil)
     return 1.0;
   conic_viewpoint_move_floats(&c->from, mean, p);
@@ -100,22 +104,22 @@ static double find_left(const level_cutting *c, const float mean[3], double reac
   if (!(x + around >= 0.0 && y + around >= 0.0 && x - around < camera->width && y - around < camera->height))
     return 1.0;
   for (int row = first[1]; row < camera->height && row <= y + around; row++)
-    for (int column = first[0]; column < camera->width && column <= x + around && most < 1.0; column++) {
+    for (int column = first[0]; column < camera->width && column <= x + around; column++) {
       const float *depths = veil->depths + ((size_t)row * (size_t)camera->width + (size_t)column) * CONIC_VEIL_HALVES;
-      double left = 1.0;
+      double left2 = 1.0;
       for (int k = 0; k < CONIC_VEIL_HALVES && (double)depths[k] <= z; k++)
-        left *= 0.5;
-      most = fmax(most, left);
+        left2 *= 0.25;
+      sum += left2;
+      n += 1.0;
     }
-  return most;
+  return n > 0.0 ? sqrt(sum / n) : 1.0;
 }
 
 /* The light that is elsewhere, in pixels. */
 static double light_of(const level_cutting *c, const conic_blend_parts *parts, const float mean[3], double scale) {
-  const double light = (double)parts->light;
-  if (light == 0.0)
+  if (parts->light == 0.0f)
     return 0.0;
-  const double all = light * scale * scale;
+  const double all = per_root * scale * sqrt((double)parts->light);
   return all > c->error ? all * find_left(c, mean, (double)parts->reach) : all;
 }
 

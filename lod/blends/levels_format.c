@@ -42,15 +42,16 @@ static const char *find_fault(const void *numbers) {
 static const conic_file_kind levels_kind = {.magic = "CONICLP\n",
                                             .ending = ".lpc",
                                             .version = CONIC_LEVELS_VERSION,
+                                            .made_by = "conic layer",
                                             .fields = header_fields,
                                             .n_fields = sizeof header_fields / sizeof *header_fields,
                                             .fault = find_fault};
 
 int conic_levels_is_file(const char *path) {
-  static const unsigned char start[12] = "CONICLP\n\4";
+  static const unsigned char start[12] = "CONICLP\n\5", older[12] = "CONICLP\n\4";
   if (conic_ranges_is_url(path))
     return conic_file_has_ending(path, "gaussians.lpc");
-  return conic_file_begins_with(path, start, sizeof start);
+  return conic_file_begins_with(path, start, sizeof start) || conic_file_begins_with(path, older, sizeof older);
 }
 
 void conic_levels_find_shape(uint32_t n_leaves, conic_levels_shape *shape) {

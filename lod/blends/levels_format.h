@@ -6,7 +6,7 @@
 #include "lod/blends/blend.h"
 
 enum {
-  CONIC_LEVELS_VERSION = 4,
+  CONIC_LEVELS_VERSION = 5,
   CONIC_LEVELS_ENTRY_BYTES = 24,
   CONIC_LEVELS_CHILDREN = 4,       /* of a cloud */
   CONIC_LEVELS_MOST_CLOUD = 16384, /* that may be asked for */

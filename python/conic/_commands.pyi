@@ -276,9 +276,9 @@ def render(
         white [0]
     planes: planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place
         in the world); cluster of hybrids; T, medianZ, inverseZ, last, doubt of Gaussian scenes; ao and shadow,
-        what light arrives; bound, how far a pixel by --error or --budget is off; motion, into .exr: pixels to
-        the next frame, and to the one before; cryptomatte, into .exr: mattes by which each input, or each patch
-        of a hybrid, is picked by its name in Nuke or Blender [rgba,Z]
+        what light arrives; bound, how far a pixel by --error or --budget is off, for which all is drawn, too;
+        motion, into .exr: pixels to the next frame, and to the one before; cryptomatte, into .exr: mattes by
+        which each input, or each patch of a hybrid, is picked by its name in Nuke or Blender [rgba,Z]
     k: how many neighbours a raw point's size and normal are estimated from, 6 to 64 [20]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
     colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
@@ -483,9 +483,9 @@ def verify(
         white [0]
     planes: planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place
         in the world); cluster of hybrids; T, medianZ, inverseZ, last, doubt of Gaussian scenes; ao and shadow,
-        what light arrives; bound, how far a pixel by --error or --budget is off; motion, into .exr: pixels to
-        the next frame, and to the one before; cryptomatte, into .exr: mattes by which each input, or each patch
-        of a hybrid, is picked by its name in Nuke or Blender [rgba,Z]
+        what light arrives; bound, how far a pixel by --error or --budget is off, for which all is drawn, too;
+        motion, into .exr: pixels to the next frame, and to the one before; cryptomatte, into .exr: mattes by
+        which each input, or each patch of a hybrid, is picked by its name in Nuke or Blender [rgba,Z]
     k: how many neighbours a raw point's size and normal are estimated from, 6 to 64 [20]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
     colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
@@ -697,9 +697,9 @@ def judge(
         white [0]
     planes: planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place
         in the world); cluster of hybrids; T, medianZ, inverseZ, last, doubt of Gaussian scenes; ao and shadow,
-        what light arrives; bound, how far a pixel by --error or --budget is off; motion, into .exr: pixels to
-        the next frame, and to the one before; cryptomatte, into .exr: mattes by which each input, or each patch
-        of a hybrid, is picked by its name in Nuke or Blender [rgba,Z]
+        what light arrives; bound, how far a pixel by --error or --budget is off, for which all is drawn, too;
+        motion, into .exr: pixels to the next frame, and to the one before; cryptomatte, into .exr: mattes by
+        which each input, or each patch of a hybrid, is picked by its name in Nuke or Blender [rgba,Z]
     k: how many neighbours a raw point's size and normal are estimated from, 6 to 64 [20]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
     colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
@@ -867,9 +867,9 @@ def project(
         white [0]
     planes: planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place
         in the world); cluster of hybrids; T, medianZ, inverseZ, last, doubt of Gaussian scenes; ao and shadow,
-        what light arrives; bound, how far a pixel by --error or --budget is off; motion, into .exr: pixels to
-        the next frame, and to the one before; cryptomatte, into .exr: mattes by which each input, or each patch
-        of a hybrid, is picked by its name in Nuke or Blender [rgba,Z]
+        what light arrives; bound, how far a pixel by --error or --budget is off, for which all is drawn, too;
+        motion, into .exr: pixels to the next frame, and to the one before; cryptomatte, into .exr: mattes by
+        which each input, or each patch of a hybrid, is picked by its name in Nuke or Blender [rgba,Z]
     k: how many neighbours a raw point's size and normal are estimated from, 6 to 64 [20]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
     colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
@@ -1080,9 +1080,9 @@ def judge_intermediates(
         white [0]
     planes: planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place
         in the world); cluster of hybrids; T, medianZ, inverseZ, last, doubt of Gaussian scenes; ao and shadow,
-        what light arrives; bound, how far a pixel by --error or --budget is off; motion, into .exr: pixels to
-        the next frame, and to the one before; cryptomatte, into .exr: mattes by which each input, or each patch
-        of a hybrid, is picked by its name in Nuke or Blender [rgba,Z]
+        what light arrives; bound, how far a pixel by --error or --budget is off, for which all is drawn, too;
+        motion, into .exr: pixels to the next frame, and to the one before; cryptomatte, into .exr: mattes by
+        which each input, or each patch of a hybrid, is picked by its name in Nuke or Blender [rgba,Z]
     k: how many neighbours a raw point's size and normal are estimated from, 6 to 64 [20]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
     colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
@@ -1269,9 +1269,9 @@ def explain(
         white [0]
     planes: planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place
         in the world); cluster of hybrids; T, medianZ, inverseZ, last, doubt of Gaussian scenes; ao and shadow,
-        what light arrives; bound, how far a pixel by --error or --budget is off; motion, into .exr: pixels to
-        the next frame, and to the one before; cryptomatte, into .exr: mattes by which each input, or each patch
-        of a hybrid, is picked by its name in Nuke or Blender [rgba,Z]
+        what light arrives; bound, how far a pixel by --error or --budget is off, for which all is drawn, too;
+        motion, into .exr: pixels to the next frame, and to the one before; cryptomatte, into .exr: mattes by
+        which each input, or each patch of a hybrid, is picked by its name in Nuke or Blender [rgba,Z]
     k: how many neighbours a raw point's size and normal are estimated from, 6 to 64 [20]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
     colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear
@@ -1928,9 +1928,9 @@ def gradient(
         white [0]
     planes: planes: rgba, Z (depth), N (normal), albedo, weight, count, id, joined by commas, or all; P (place
         in the world); cluster of hybrids; T, medianZ, inverseZ, last, doubt of Gaussian scenes; ao and shadow,
-        what light arrives; bound, how far a pixel by --error or --budget is off; motion, into .exr: pixels to
-        the next frame, and to the one before; cryptomatte, into .exr: mattes by which each input, or each patch
-        of a hybrid, is picked by its name in Nuke or Blender [rgba,Z]
+        what light arrives; bound, how far a pixel by --error or --budget is off, for which all is drawn, too;
+        motion, into .exr: pixels to the next frame, and to the one before; cryptomatte, into .exr: mattes by
+        which each input, or each patch of a hybrid, is picked by its name in Nuke or Blender [rgba,Z]
     k: how many neighbours a raw point's size and normal are estimated from, 6 to 64 [20]
     columns: what the columns of a text file are, as x,y,z,intensity,-,r,g,b [as its header says]
     colors: what colours mean that are fractions of 1: display values, as other programs write them, or linear

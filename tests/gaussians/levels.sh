@@ -54,7 +54,8 @@ grep -q 'without levels have 3000 Gaussians, and the budget is 700' err || fail 
 run 0 render balls.lpc again.lpc --profile exact --size 96x96 --budget 900 -o few.pfm --json few.json \
   --place again.lpc=4,0,0 --threads 3
 (($(number gaussians few.json) <= 900 && $(number gaussians few.json) > 600)) || fail "a budget of two scenes"
-run 0 render balls.lpc again.lpc --profile exact --size 96x96 --budget 900 -o other.pfm --place again.lpc=4,0,0 --threads 1
+run 0 render balls.lpc again.lpc --profile exact --size 96x96 --budget 900 -o other.pfm \
+  --place again.lpc=4,0,0 --threads 1
 cmp -s few.pfm other.pfm || fail "threads change a bit of what shares a budget"
 for scenes in balls.lpc "balls.lpc again.lpc"; do
   # shellcheck disable=SC2086
@@ -98,6 +99,14 @@ run 3 render balls.lpc --profile surface -o no.png
 run 0 layer balls.ply -o splats.lpc --payload plain
 run 0 info splats.lpc
 grep -q '^samples' out || fail "--payload plain keeps no splats"
+cp balls.lpc older.lpc
+printf '\4' | dd of=older.lpc bs=1 seek=8 conv=notrunc 2> /dev/null
+for command in "render older.lpc --profile exact -o no.png" "info older.lpc" \
+  "render older.lpc sphere.ply --profile exact -o no.png"; do
+  # shellcheck disable=SC2086
+  run 3 $command
+  grep -q 'made by an older version; make it again with conic layer' err || fail "$command: $(cat err)"
+done
 head -c 3000 balls.lpc > no.lpc
 run 3 render no.lpc --profile exact -o no.png
 [[ $failures -eq 0 ]]

@@ -129,7 +129,7 @@ conic_status conic_layers_read_header(conic_context *context, const char *name, 
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: the file ends within the header (at byte %zu)", name, n_bytes);
   memset(header, 0, sizeof *header);
   conic_file_fields_read(header_fields, N_HEADER_FIELDS, bytes + sizeof magic, header);
-  if (header->version == CONIC_LAYERS_VERSION + 1)
+  if (header->version == CONIC_LAYERS_VERSION + 1 || header->version == CONIC_LAYERS_VERSION + 2)
     return conic_fail(
         context, CONIC_ERROR_INPUT,
         "%s: a .lpc of Gaussians: conic render draws it by any --profile but surface, and conic info tells "

@@ -52,6 +52,27 @@ static void moments(void) {
   CHECK((double)whole.parts.reach >= (double)d + 3.34 * (double)s);
 }
 
+/* Two of one colour lose nothing over that colour: what they change counts a fifth over black, and a 20th of itself. */
+static void light_of_one_color(void) {
+  double light[2];
+  for (int is_white = 0; is_white < 2; is_white++) {
+    float rows[2][14], row[14];
+    conic_blend parts[2], whole;
+    const float color = (float)((is_white - 0.5) / CONIC_SH_CONSTANT);
+    for (int i = 0; i < 2; i++) {
+      const float values[14] = {
+          i ? 1.0f : -1.0f, 0.0f, 0.0f, 0.5f, 0.5f, 0.5f, 1.0f, 0.0f, 0.0f, 0.0f, 0.75f, color, color, color};
+      memcpy(rows[i], values, sizeof values);
+      conic_blend_take(rows[i], 0, &parts[i]);
+    }
+    conic_blend_merge(parts, 2, 0, row);
+    conic_blend_take(row, 0, &whole);
+    conic_blend_find_parts(parts, 2, 0, &whole);
+    light[is_white] = (double)whole.parts.light;
+  }
+  CHECK(light[0] > 0.0 && fabs(light[1] / light[0] - (0.05 + 3.0 * 0.2) / 0.05) < 0.1);
+}
+
 /* Widened, one alone stays what it is, and two that are small beside what is added are one behind the other. */
 static void dilation(void) {
   float rows[2][14], row[14];
@@ -200,7 +221,7 @@ static void budgets_shared(conic_context *context) {
   conic_gaussians_release(context, &scene);
 }
 
-/* No pixel is over the bound that the cut states, nor any more are drawn than the budget says. */
+/* Of a sheet no pixel is off by more than a quarter of the error, nor are any more are drawn than the budget says. */
 static void bounds_hold(conic_context *context) {
   conic_gaussians scene = sheet(context), set;
   conic_levels_statistics statistics;
@@ -214,7 +235,7 @@ static void bounds_hold(conic_context *context) {
   draw(context, &scene, distance, truth);
   uint64_t n_before = scene.count + 1;
   for (int i = 0; i < 5; i++) {
-    const double errors[5] = {1e-9, 0.1, 0.2, 0.4, 0.8};
+    const double errors[5] = {1e-9, 0.4, 0.8, 1.6, 3.2};
     const conic_levels_wish wish = {.error = errors[i]};
     double most = 0.0;
     cut = choose(&one, &wish, camera_before(SIDE, distance), &set);
@@ -222,7 +243,7 @@ static void bounds_hold(conic_context *context) {
     for (int k = 0; k < 3 * SIDE * SIDE; k++)
       most = fmax(most, fabs((double)(pixels[k] - truth[k])));
     CHECK(cut.error == errors[i] && cut.n == set.count);
-    CHECK(most <= errors[i] + 1e-5 && cut.n < n_before);
+    CHECK(most <= 0.25 * errors[i] + 1e-5 && cut.n < n_before);
     CHECK(i > 0 ? cut.n_merged > 0 : cut.n == scene.count && most == 0.0);
     n_before = cut.n;
     conic_gaussians_release(context, &set);
@@ -285,6 +306,7 @@ int main(void) {
   }
   conic_zstd_destroy(context, zstd);
   moments();
+  light_of_one_color();
   dilation();
   round_trip(context);
   bounds_hold(context);
