@@ -5,6 +5,7 @@
 #include "core/image/image_common.h"
 #include "lod/blends/levels_build.h"
 #include "lod/layers/build/layers_team.h"
+#include "tests/fuzz/intermediates_example.h"
 #include "tests/fuzz/strips_example.h"
 #include "tests/support/layers_fixture.h"
 #include "tests/support/suite_example.h"
@@ -167,6 +168,42 @@ static void seeds_levels(seed_set *set, conic_context *context) {
   conic_gaussians_release(context, &scene);
 }
 
+/* What other programs made of the five Gaussians that fuzz_intermediates.c has. */
+static void seeds_intermediates(seed_set *set, conic_context *context) {
+  conic_gaussian_intermediates found;
+  conic_gaussian_options options;
+  unsigned char bytes[1 << 16];
+  conic_gaussians scene = intermediates_example(context, &options);
+  CHECK_OK(conic_gaussian_intermediates_find(context, &scene, &intermediates_camera, &options, NULL, &found));
+  CHECK_OK(conic_gaussian_intermediates_write(context, files_path("seed.npz"), &found));
+  add_file(set, "intermediates", files_path("seed.npz"), bytes, sizeof bytes);
+  conic_gaussian_intermediates_release(context, &found);
+  conic_gaussians_release(context, &scene);
+}
+
+/* A pixel with a text. */
+static void seeds_shots(seed_set *set, conic_context *context) {
+  static const char tiff[] = "II*\0\10\0\0\0\1\0\16\1\2\0\6\0\0\0\32\0\0\0\0\0\0\0{\"a\":1";
+  unsigned char bytes[4096];
+  conic_image image;
+  CHECK_OK(conic_image_allocate(context, 1, 1, 1u << CONIC_PLANE_RGBA, &image));
+  image.shot = "{\"conic_shot\": 1}";
+  for (int i = 0; i < 2; i++)
+    if (conic_image_write(context, files_path(i ? "seed.png" : "seed.exr"), &image) == CONIC_OK)
+      add_file(set, "picture_shot", files_path(i ? "seed.png" : "seed.exr"), bytes, sizeof bytes);
+  seeds_add(set, "picture_shot", "tif", 1, tiff, sizeof tiff - 1);
+  conic_image_release(context, &image);
+}
+
+/* Points in any format that batches are read of. */
+static void seeds_stream(seed_set *set) {
+  static const char *const targets[] = {"ply", "las", "xyz", "pcd", "ptx", "e57", "obj"};
+  for (int i = 0, n = set->n; i < n; i++)
+    for (size_t k = 0; k < sizeof targets / sizeof *targets; k++)
+      if (strcmp(set->seeds[i].target, targets[k]) == 0)
+        seeds_add(set, "stream", targets[k], 1, set->seeds[i].bytes, set->seeds[i].n_bytes);
+}
+
 int main(int argc, char **argv) {
   if (argc != 2) {
     fprintf(stderr, "usage: %s FOLDER\n", argv[0]);
@@ -179,6 +216,9 @@ int main(int argc, char **argv) {
   seeds_all_records(set);
   seeds_all_hierarchies(set);
   seeds_all_references(set);
+  seeds_stream(set);
+  seeds_intermediates(set, context);
+  seeds_shots(set, context);
   seeds_sums(set, context);
   seeds_strips(set, context);
   seeds_branches(set);
@@ -202,6 +242,10 @@ int main(int argc, char **argv) {
       "\"cameras\": [{\"width\": 1, \"height\": 1, \"fx\": 1, \"fy\": 1, \"cx\": 0, \"cy\": 0, \"cam_from_world\": "
       "[[0, 1, 0, 0], [0, 0, 1, 0], [1, 0, 0, 0]]}]}}");
   seeds_text(set, "suite", "json", SUITE_EXAMPLE);
+  seeds_text(set, "places", "three", "0:1,2 -3e4;2:0 -1 0 5 1 0 0 6 0 0 1 7;1:2 0 0 .5 0 2 0 0 0 0 2 0 0 0 0 1");
+  seeds_text(set, "http_response", "range",
+             "HTTP/1.1 302 Found\r\nLocation: x\r\n\r\nHTTP/2 206\r\nContent-Range: bytes 0-65535/1234567\r\n"
+             "Content-Length: 65536\r\nContent-Encoding: gzip\r\nETag: \"a-1\"\r\n\r\n");
   seeds_text(set, "frames", "frames",
              "conic frames 1\nkey 0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef\n"
              "file 82907b05ff270d1cb93fab619df708504259a9aa9214808f6563f59d1076fe3c 5831 a/f.0001.exr\nframe 0\n"
