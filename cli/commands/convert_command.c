@@ -182,6 +182,8 @@ static int convert_scene(void *cookie) {
   double start = cli_seconds();
   conic_status status = conic_gaussians_read(context, job->base.input, &options, &job->scene);
   start = cli_build_end_stage(&job->base.stages[READ], start);
+  if (status == CONIC_OK && job->scene.count == 0)
+    status = conic_fail(context, CONIC_ERROR_INPUT, "%s: there are no Gaussians in it", job->base.input);
   if (status == CONIC_OK)
     status = arrange(job);
   start = cli_build_end_stage(&job->base.stages[WORK], start);

@@ -104,4 +104,12 @@ run 0 convert kept.glb -o kept.ply --from-frame rdf
 $decode compare scene.ply kept.ply 0 1e-6 1e-6 2e-7 0 0 || fail "--frame keep"
 run 0 convert scene.ply -o near.compressed.ply --json -
 grep -q '"reordered": true' out || fail "a compressed.ply is not ordered: $(grep reordered out)"
+
+# Nothing is made of a scene without Gaussians.
+LC_ALL=C sed '/^end_header/q; s/^element vertex .*/element vertex 0/' scene.ply > none.ply
+for ending in splat glb ply spz; do
+  run 3 convert none.ply -o made.$ending
+  grep -q 'none.ply: there are no Gaussians' err || fail "none as .$ending: $(cat err)"
+  [[ ! -e made.$ending ]] || fail "none as .$ending is left"
+done
 [[ $failures -eq 0 ]]
