@@ -159,5 +159,5 @@ void conic_laz_wave(conic_laz_stream *stream, conic_laz_waves *waves, const unsi
   read_wave_number(stream, &waves->n_bytes, 0, last + 9, wave + 9);
   read_wave_number(stream, &waves->location, 0, last + 13, wave + 13);
   for (unsigned axis = 0; axis < 3; axis++)
-    read_wave_number(stream, &waves->direction, axis, last + 17 + 4 * axis, wave + 17 + 4 * axis);
+    read_wave_number(stream, &waves->direction, axis, last + 17 + (size_t)4 * axis, wave + 17 + (size_t)4 * axis);
 }

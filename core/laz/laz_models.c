@@ -50,7 +50,7 @@ int conic_laz_model_begin(conic_laz_model *model, conic_laz_arena *arena, unsign
     return 0;
   *model = (conic_laz_model){.bound = numbers,
                              .count = numbers + n + 1,
-                             .table = n_places ? (uint8_t *)(numbers + 2 * n + 1) : NULL,
+                             .table = n_places ? (uint8_t *)(numbers + 2 * (size_t)n + 1) : NULL,
                              .n = n,
                              .cycle = n};
   for (unsigned i = 0; i < n; i++)
@@ -86,7 +86,7 @@ void conic_laz_model_update(conic_laz_model *model) {
   model->total += model->cycle;
   if (model->total > MOST_TOTAL)
     halve_counts(model);
-  uint32_t scale = 0x80000000u / model->total;
+  uint32_t scale = 0x80000000u / model->total; /* NOLINT(clang-analyzer-core.DivideZero): each counts 1 at least */
   for (unsigned i = 0; i < model->n; i++) {
     model->bound[i] = (uint16_t)(scale * sum >> (31 - CONIC_LAZ_PROBABILITY_BITS));
     sum += model->count[i];

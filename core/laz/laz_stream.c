@@ -38,6 +38,7 @@ int32_t conic_laz_off(conic_laz_stream *stream, conic_laz_integer *integer, unsi
   if (k == 32)
     return INT32_MIN;
   if (k <= 4)
+    /* NOLINTNEXTLINE(bugprone-branch-clone): the compiler is to know that a model of so few has no table */
     off = conic_laz_symbol(stream, &integer->high[k], 1u << k);
   else if (k <= HIGH_BITS)
     off = conic_laz_symbol(stream, &integer->high[k], 1u << k);

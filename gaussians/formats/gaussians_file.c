@@ -68,7 +68,7 @@ conic_status conic_gaussians_begin(conic_context *context, const char *name,
   return conic_gaussians_allocate(context, (size_t)count, sh_degree, fields, gaussians);
 }
 
-conic_status conic_gaussian_bytes_wrong(const conic_gaussian_bytes *file, size_t at, const char *what) {
+conic_status(conic_gaussian_bytes_wrong)(const conic_gaussian_bytes *file, size_t at, const char *what) {
   return conic_fail(file->context, CONIC_ERROR_INPUT, "%s: %s (at byte %zu)", file->name, what, at);
 }
 
@@ -181,18 +181,16 @@ static int find_scene_kind(const char *path, const unsigned char *bytes, size_t 
   while (blank < n && bytes[blank] && strchr(" \t\r\n", bytes[blank]))
     blank++;
   int is_json = blank < n && bytes[blank] == '{';
-  if (n >= 4 && memcmp(bytes, "NGSP", 4) == 0)
+  if ((n >= 4 && memcmp(bytes, "NGSP", 4) == 0) ||
+      (n >= 2 && memcmp(bytes, "\x1f\x8b", 2) == 0 && is_packed_spz(bytes, n)))
     *kind = CONIC_GAUSSIANS_SPZ;
-  else if (n >= 2 && memcmp(bytes, "\x1f\x8b", 2) == 0 && is_packed_spz(bytes, n))
-    *kind = CONIC_GAUSSIANS_SPZ;
-  else if (n >= 4 && memcmp(bytes, "PK\3\4", 4) == 0 && is_sog_archive(bytes, n))
-    *kind = CONIC_GAUSSIANS_SOG;
   else if (n >= 4 && memcmp(bytes, "glTF", 4) == 0 && names_gaussians(bytes, n))
     *kind = CONIC_GAUSSIANS_GLB;
   else if (is_json && names_gaussians(bytes, n))
     *kind = CONIC_GAUSSIANS_GLTF;
-  else if (is_json && ((conic_assimp_has_text(bytes, n, "\"means\"") && conic_assimp_has_text(bytes, n, "\"sh0\"")) ||
-                       conic_assimp_has_text(bytes, n, "\"lodLevels\"")))
+  else if ((n >= 4 && memcmp(bytes, "PK\3\4", 4) == 0 && is_sog_archive(bytes, n)) ||
+           (is_json && ((conic_assimp_has_text(bytes, n, "\"means\"") && conic_assimp_has_text(bytes, n, "\"sh0\"")) ||
+                        conic_assimp_has_text(bytes, n, "\"lodLevels\""))))
     *kind = CONIC_GAUSSIANS_SOG;
   else if (path && conic_file_has_ending(path, "splat"))
     *kind = CONIC_GAUSSIANS_SPLAT;

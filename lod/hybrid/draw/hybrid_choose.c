@@ -59,6 +59,7 @@ static double measure_node(const hybrid_planning *p, const conic_hybrid_node *no
   if (k == node->n_levels)
     return with_colors(p, conic_hybrid_point_error_px(view, node), conic_hybrid_point_change(view, node));
   const conic_hybrid_level *level = &p->hybrid->levels[node->first_level + k];
+  /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): there are levels where there are nodes */
   double weight = p->asked->budget && level->kind == CONIC_HYBRID_TRIANGLES ? weight_of_whole : 1.0;
   return with_colors(p, weight * conic_hybrid_node_error_px(p->hybrid, view, node, level),
                      conic_hybrid_change(view, &node->bound, level));
@@ -340,6 +341,7 @@ static void keep_error(hybrid_planning *p, plan_best *best) {
 }
 
 /* Chooses of either kind; or of one kind alone, which may be fewer together. */
+/* NOLINTNEXTLINE(readability-non-const-parameter): `best` fills them */
 static conic_status choose_kinds(hybrid_planning *p, uint32_t *levels, uint32_t *nodes) {
   const conic_hybrid_choosing *asked = p->asked;
   uint64_t fewest_count = UINT64_MAX, count;
