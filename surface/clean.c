@@ -22,10 +22,10 @@ static const double TWO_HEAPS = 1.5, LEAST_GAP = 0.1;
 static int is_between_sheets(const conic_surface *surface, const conic_workspace *workspace,
                              const conic_landing *projection) {
   const conic_near *near = &workspace->near;
-  const double *residuals = near->columns + (size_t)conic_n_coefficients(surface->options.degree) * near->n_padded;
   double sum = 0.0, second = 0.0, fourth = 0.0;
   if (surface->options.type != CONIC_SURFACE_MLS || surface->creases.side || projection->outcome != CONIC_SURFACE_DONE)
     return 0;
+  const double *residuals = near->columns + (size_t)conic_n_coefficients(surface->options.degree) * near->n_padded;
   for (size_t i = 0; i < near->n; i++) {
     double square = residuals[i] * residuals[i]; /* in units of h */
     sum += near->weights[i];

@@ -187,6 +187,13 @@ static conic_status put_all(const conic_gaussian_writer *writer, json_text *json
   size_t n_attributes = list_attributes(writer->sh_degree, attributes);
   uint64_t n_numbers = 0;
   int is_glb = writer->options->kind == CONIC_GAUSSIANS_GLB;
+  const conic_gaussians *set = writer->gaussians;
+  for (size_t i = 0; i < set->count; i++) /* as the text has it, and the reader */
+    if (set->scale[0][i] < 0.0f || set->scale[1][i] < 0.0f || (set->scale[2] && set->scale[2][i] < 0.0f) ||
+        set->opacity[i] < 0.0f || set->opacity[i] > 1.0f)
+      return conic_fail(writer->context, CONIC_ERROR_INPUT,
+                        "%s: glTF has no Gaussians of negative scales, or opacities outside 0 and 1, as number %zu has",
+                        writer->path, i);
   for (size_t i = 0; i < n_attributes; i++)
     n_numbers += (uint64_t)attributes[i].n_components * writer->gaussians->count;
   make_json(writer, attributes, n_attributes, json);

@@ -159,4 +159,8 @@ for memory in "" "--memory 100"; do
 done
 [[ ! -e x.ply ]] || fail "a file of a run that failed"
 
+
+# One point has no surface, and no sheets that it could lie between.
+echo 1 2 3 0 0 1 > one.xyz
+run 3 mls project one.xyz -o one.ply
 [[ $failures -eq 0 ]]

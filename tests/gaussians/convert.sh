@@ -112,4 +112,11 @@ for ending in splat glb ply spz; do
   grep -q 'none.ply: there are no Gaussians' err || fail "none as .$ending: $(cat err)"
   [[ ! -e made.$ending ]] || fail "none as .$ending is left"
 done
+# Nor a glTF that its text forbids, of what a .splat may hold: scales of -1, 1 and 1.
+printf '\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x80\xbf\0\0\x80\x3f\0\0\x80\x3f\x80\x80\x80\x80\xff\x80\x80\x80' > mirrored.splat
+run 0 convert mirrored.splat -o mirrored.ply
+for ending in glb gltf; do
+  run 3 convert mirrored.splat -o made.$ending
+  grep -q 'negative scales' err && [[ ! -e made.$ending ]] || fail "a negative scale as .$ending: $(cat err)"
+done
 [[ $failures -eq 0 ]]
