@@ -1,6 +1,7 @@
 #include "core/pictures/texture_file.h"
 
 #include "core/base/context_struct.h"
+#include "core/files/guard.h"
 #include "core/files/scratch.h"
 #include "core/image/texture_levels.h"
 
@@ -20,19 +21,27 @@ static void warn_of_picture(void *cookie, conic_log_level level, const char *mes
             log->name, level == CONIC_LOG_ERROR ? " is left out" : "", message);
 }
 
-conic_status conic_texture_file_read(conic_context *context, const char *model, const char *path, const char *name,
-                                     conic_texture_wrap wrap, conic_texture **texture) {
+/* The copy of the context would keep to itself what it notes. */
+static conic_status read_texture(conic_context *context, const char *model, const char *path, const char *name,
+                                 conic_texture_wrap wrap, conic_texture **texture) {
   conic_context told = *context;
   picture_log log = {context, model, path, name};
   conic_image image;
   told.options.log = warn_of_picture;
   told.options.log_cookie = &log;
+  told.guards_inputs = 0;
   conic_status status = conic_texture_read_image(&told, path, &image);
   if (status == CONIC_ERROR_MEMORY || status == CONIC_ERROR_CANCELLED)
     return status;
   if (status != CONIC_OK)
     return CONIC_OK;
   return conic_texture_take(context, &image, wrap, texture);
+}
+
+conic_status conic_texture_file_read(conic_context *context, const char *model, const char *path, const char *name,
+                                     conic_texture_wrap wrap, conic_texture **texture) {
+  const conic_status status = conic_guard_note_path(context, path);
+  return status == CONIC_OK ? read_texture(context, model, path, name, wrap, texture) : status;
 }
 
 /* Pictures are read from files; this one becomes one without a name. */
@@ -48,7 +57,7 @@ conic_status conic_texture_bytes_read(conic_context *context, const char *model,
   snprintf(path, sizeof path, "/proc/self/fd/%d", scratch.descriptor);
   status = conic_scratch_write(&scratch, 0, bytes, n_bytes);
   if (status == CONIC_OK)
-    status = conic_texture_file_read(context, model, path, name, wrap, texture);
+    status = read_texture(context, model, path, name, wrap, texture);
   conic_scratch_close(&scratch);
   return status;
 }

@@ -58,6 +58,13 @@ printf '{"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"me
   "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}]}' > g.gltf
 printf '\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x80\x3f\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x80\x3f\0\0\0\0' > g.bin
 kept g.bin render g.gltf --as mesh --size 16x16 -o a.pfm --json g.bin
+# (and a picture of its material's; the shot names it)
+material='"images": [{"uri": "t.pfm"}], "textures": [{"source": 0}], "materials": [{"pbrMetallicRoughness": {'
+material+='"baseColorTexture": {"index": 0}}}], '
+sed "s/{\"POSITION\": 0}/&, \"material\": 0/; s/\"scenes\"/$material&/" g.gltf > painted.gltf
+kept t.pfm render painted.gltf --as mesh --size 16x16 -o t.pfm
+run 0 render painted.gltf --as mesh --size 16x16 -o a.pfm --save-shot a.shot.json
+grep -q '"name": "t.pfm"' a.shot.json || fail "the shot does not name the picture of a material"
 # (which it may not name outside of its folder)
 mkdir inner
 sed 's:g.bin:../g.bin:' g.gltf > inner/g.gltf
