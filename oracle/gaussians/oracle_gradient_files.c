@@ -41,7 +41,7 @@ static conic_status weights_of_image(conic_context *context, const char *path, c
     status = allocate_weights(context, (size_t)image.width, (size_t)image.height, rgba != NULL,
                               rgba && !image.lacks_alpha, z != NULL, w);
   for (size_t i = 0; i < (size_t)image.width * (size_t)image.height && status == CONIC_OK; i++) {
-    for (size_t c = 0; c < 3 && w->rgb; c++)
+    for (size_t c = 0; c < 3 && rgba && w->rgb; c++)
       w->rgb[3 * i + c] = (double)rgba[4 * i + c];
     if (rgba && w->alpha)
       w->alpha[i] = (double)rgba[4 * i + 3];

@@ -69,7 +69,7 @@ void conic_oracle_harmonics(const double *sh, int degree, const double direction
   for (int channel = 0; channel < 3; channel++) {
     color[channel] = 0.0;
     for (int k = 0; k < n; k++)
-      color[channel] += y[k] * sh[3 * k + channel];
+      color[channel] += y[k] * sh[3 * k + channel]; /* NOLINT(clang-analyzer-core.UndefinedBinaryOperatorResult) */
     color[channel] = oracle_max(color[channel] + 0.5, 0.0);
   }
 }

@@ -23,9 +23,10 @@ static void add_array(npz_writer *w, const char *name, const char *behind, const
     return;
   }
   conic_numpy_head(doubles ? "<f8" : "<i8", shape, columns > 1 ? 2 : 1, bytes);
-  for (size_t i = 0; i < n; i++)
-    conic_store_64(bytes + CONIC_NUMPY_HEAD + 8 * i,
-                   doubles ? conic_bits_of_double(doubles[i]) : (uint64_t)integers[i]);
+  for (size_t i = 0; i < n && doubles; i++)
+    conic_store_64(bytes + CONIC_NUMPY_HEAD + 8 * i, conic_bits_of_double(doubles[i]));
+  for (size_t i = 0; i < n && integers; i++)
+    conic_store_64(bytes + CONIC_NUMPY_HEAD + 8 * i, (uint64_t)integers[i]);
   snprintf(file, sizeof file, "%s%s.npy", name, behind);
   conic_zip_add(&w->zip, file, bytes, n_bytes);
   conic_memory_release(w->context, bytes);
