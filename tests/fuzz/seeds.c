@@ -242,7 +242,7 @@ int main(int argc, char **argv) {
       "\"cameras\": [{\"width\": 1, \"height\": 1, \"fx\": 1, \"fy\": 1, \"cx\": 0, \"cy\": 0, \"cam_from_world\": "
       "[[0, 1, 0, 0], [0, 0, 1, 0], [1, 0, 0, 0]]}]}}");
   seeds_text(set, "suite", "json", SUITE_EXAMPLE);
-  seeds_text(set, "places", "three", "0:1,2 -3e4;2:0 -1 0 5 1 0 0 6 0 0 1 7;1:2 0 0 .5 0 2 0 0 0 0 2 0 0 0 0 1");
+  seeds_text(set, "input_places", "three", "0:1,2 -3e4;2:0 -1 0 5 1 0 0 6 0 0 1 7;1:2 0 0 .5 0 2 0 0 0 0 2 0 0 0 0 1");
   seeds_text(set, "http_response", "range",
              "HTTP/1.1 302 Found\r\nLocation: x\r\n\r\nHTTP/2 206\r\nContent-Range: bytes 0-65535/1234567\r\n"
              "Content-Length: 65536\r\nContent-Encoding: gzip\r\nETag: \"a-1\"\r\n\r\n");
