@@ -4,6 +4,7 @@
 #include "cli/render/kept_frames.h"
 #include "cli/render/sample_options.h"
 #include "cli/render/shot_again.h"
+#include "cli/render/strip_pictures.h"
 #include "cli/scene/light_options.h"
 #include "cli/scene/scene_options.h"
 #include "cli/scene/stereo.h"
@@ -143,6 +144,8 @@ static int check_outputs(const cli_session *session, cli_render_job *job, int is
     answer = cli_top_check(session, job);
   if (answer == CLI_DONE)
     answer = cli_kept_frames_check(session, job);
+  if (answer == CLI_DONE)
+    answer = cli_memory_check(session, job);
   if (answer == CLI_DONE)
     answer = cli_accumulate_check(session, job);
   if (answer == CLI_DONE && !job->top.is_wanted)
@@ -290,7 +293,8 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        .acts = {.on = CLI_FACT(LEVELS), .apart = CLI_FACT(MAP), .is_work = 1}},
       {"memory", CLI_INT, &memory_mib, "MiB",
        "of a cloud in levels, what its clouds, splats and pixels may take in memory [512]; of a .chy, what is read and "
-       "drawn [all]; of all else, twice what the pixels of an .exr may [2048]",
+       "drawn [all]; of all else, twice what the pixels of one .exr may, if it is all that is written and has no --ao, "
+       "--shadow, lamps or --accumulate [2048]",
        1, 1 << 20, .is_given = &job->is_memory_given, .acts.is_work = 1},
       {"occlusion", CLI_CHOICE, &occlusion, "HOW",
        "of a cloud in levels, do not read what is hidden behind the rest: auto, on or off; changes no bit of the "

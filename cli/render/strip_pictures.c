@@ -8,6 +8,7 @@
 #include "core/image/image_common.h"
 #include "shots/strips/strips.h"
 #include "shots/windows.h"
+#include "source/source_kind.h"
 
 static uint64_t picture_bytes(const cli_render_job *job, const conic_camera *camera) {
   return conic_planes_pixel_bytes(job->shot.planes) * (uint64_t)camera->width * (uint64_t)camera->height;
@@ -31,6 +32,15 @@ int cli_may_be_in_strips(const cli_session *session, const cli_render_job *job) 
   return is_plain_exr(session, job) && job->repeat == 1 && !job->top.is_wanted && !job->accumulating.n_samples &&
          !job->is_exposure_automatic && !conic_shot_is_lit(&job->shot) && job->shot.light.dome_stops == 0.0 &&
          !job->shot.view.may_be_coarser;
+}
+
+int cli_memory_check(const cli_session *session, const cli_render_job *job) {
+  const int is_file = job->opening.as != CONIC_AS_HYBRID || conic_source_kind_of_file(job->inputs[0]);
+  if (!job->is_memory_given || job->abilities & CONIC_SOURCE_STREAMS || job->top.is_wanted ||
+      (job->abilities & CONIC_SOURCE_CLUSTERS && is_file) || cli_may_be_in_strips(session, job))
+    return CLI_DONE;
+  return cli_usage("render: --memory has no effect: beside clouds in levels, a .chy and maps, it bounds one .exr of "
+                   "planes as they are drawn, without --ao, --shadow, lamps, --accumulate and --show");
 }
 
 int cli_is_in_strips(const cli_session *session, const cli_render_job *job, const conic_camera *camera) {

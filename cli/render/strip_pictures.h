@@ -6,6 +6,9 @@
 /* Whether a picture could be, as far as the options tell. */
 int cli_may_be_in_strips(const cli_session *session, const cli_render_job *job);
 
+/* Refuses --memory that bounds nothing. */
+int cli_memory_check(const cli_session *session, const cli_render_job *job);
+
 /* Whether it is: its planes are too large to be held, and go into an EXR as they are drawn. */
 int cli_is_in_strips(const cli_session *session, const cli_render_job *job, const conic_camera *camera);
 

@@ -177,7 +177,8 @@ def render(
     deadline: of a cloud in levels, no more is read after so many seconds; what is missing is drawn coarser
     tolerate: of a cloud in levels, what is damaged or does not come is drawn coarser, with a warning
     memory: of a cloud in levels, what its clouds, splats and pixels may take in memory [512]; of a .chy, what
-        is read and drawn [all]; of all else, twice what the pixels of an .exr may [2048]
+        is read and drawn [all]; of all else, twice what the pixels of one .exr may, if it is all that is
+        written and has no --ao, --shadow, lamps or --accumulate [2048]
     occlusion: of a cloud in levels, do not read what is hidden behind the rest: auto, on or off; changes no bit
         of the picture [auto]
     timeout: of a URL, a server that is silent for so long is asked again, up to 4 times [15]
@@ -1318,7 +1319,8 @@ def diff(
     min_psnr: let the colour's peak signal-to-noise ratio be no lower [identical]
     min_ssim: let the structural similarity be no lower [identical]
     max_flip: let the mean FLIP be no higher [identical]
-    display: whose colours are display values: none, a, b or both [auto: as an EXR says]
+    display: whose colours are display values: none, a, b or both [auto: as an EXR says, of itself and of a
+        .pfm, .hdr or NumPy file beside it]
     reduce: bring the larger picture to the size of the other one
     match: how pictures of two folders find each other: by name, number or order [auto]
     subset: of folders: B need not have all the pictures of A

@@ -11,8 +11,8 @@ import sys
 import hierarchies_make
 
 conic, copc = sys.argv[1:]
-WORK = ["--memory 20", "--tolerate", "--progressive levels", "--occlusion on", "--occlusion off", "--deadline 1000",
-        "--where x>-1e9"]
+WORK = ["--memory 20", "--tile 16", "--tolerate", "--progressive levels", "--occlusion on", "--occlusion off",
+        "--deadline 1000", "--where x>-1e9"]
 BASES = ["", "--exposure auto", "--color-by height"]
 PLANES = ("rgba Z N albedo weight count id P cluster T medianZ inverseZ last doubt ao shadow samples variance "
           "motion bound cryptomatte").split()

@@ -82,6 +82,16 @@ run_as_typed 2 render knot.ply --plain --size 300x500 --memory 1000 --resumable 
 grep -q 'in strips' err || fail "told is not that only strips are kept: $(cat err)"
 run_as_typed 0 "${kept[@]}"
 
+# --memory that bounds nothing is refused.
+small=(render knot.ply --size 30x50 --memory 1000)
+run_as_typed 0 "${small[@]}" -o small.exr
+for words in '-o small.png' '-o small.exr --shadow' '-o small.exr --accumulate 2' '-o small.exr -o small.pfm' \
+  '-o small.png --as hybrid' '-o small.exr --show overdraw:small.png'; do
+  # shellcheck disable=SC2086
+  run_as_typed 2 "${small[@]}" $words
+  grep -q -- '--memory has no effect' err || fail "$words: $(cat err)"
+done
+
 # A signal leaves what is finished; each of several pictures keeps its own strips.
 "$conic" "${picture[@]}" --samples 16 --resumable -o here/b.exr > out 2> err &
 for ((i = 0; i < 1000; i++)); do

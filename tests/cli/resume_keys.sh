@@ -25,7 +25,7 @@ takes 'another order' --samples 1 --size 24x24 k.ply --turntable 3
 takes 'equals signs' k.ply --turntable=3 --size=24x24 --samples=1
 takes 'a folder' ./k.ply --turntable 3 --size 24x24 --samples 1
 takes 'explicit defaults' "${begun[@]}" --azimuth 30 --fov 40 --shade phong --cull none --kernel gauss --light studio --passes 3
-takes 'what changes no bit' "${begun[@]}" --memory 1024 --device cpu --threads 1 --tile 16 --isa scalar --json t.json
+takes 'what changes no bit' "${begun[@]}" --device cpu --threads 1 --tile 16 --isa scalar --json t.json
 cp k.ply moved.ply
 takes 'another name' moved.ply --turntable 3 --size 24x24 --samples 1
 for change in '--samples 2' '--size 24x25' '--azimuth 31' '--tone agx' '--no-shot' '--light 1,2,3' '--near 0.2'; do
