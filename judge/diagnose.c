@@ -149,6 +149,7 @@ static conic_planted right_gaussians(const conic_gaussians *gaussians, const con
                          .rules = *conic_profile_row_of(options->profile),
                          .prefilter = options->prefilter,
                          .most_degree = gaussians->sh_degree,
+                         .n_whole = gaussians->count,
                          .is_opaque = judging->is_opaque,
                          .surfaces = judging->surfaces,
                          .size = 1.0f,

@@ -228,7 +228,7 @@ void conic_planted_finish(const conic_planted *p, size_t n, conic_channels *valu
     float *v = values[i], factor = alpha_factor(p->alpha, v), gloss = is_weighted ? 1.0f : factor;
     const float T = v[CONIC_CHANNEL_T];
     for (int c = 0; c < 3; c++) {
-      v[c] = factor * (v[c] + T * p->behind[c]) + gloss * v[CONIC_CHANNEL_GLOSS + c];
+      v[c] = factor * (v[c] + (p->adds_whole ? 1.0f : T) * p->behind[c]) + gloss * v[CONIC_CHANNEL_GLOSS + c];
       v[CONIC_CHANNEL_ALBEDO + c] *= is_weighted ? factor : 1.0f;
       if (p->transfer)
         v[c] = conic_planted_transferred(p->transfer, v[c]);

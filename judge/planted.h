@@ -14,16 +14,20 @@ typedef enum conic_planted_order {
   CONIC_ORDER_FILE = 3
 } conic_planted_order;
 
-/* Where a Gaussian ends: 3 standard deviations from its centre. */
+/* Where a Gaussian ends: some standard deviations from its centre. */
 typedef enum conic_planted_extent {
   CONIC_EXTENT_OWN = 0,
-  CONIC_EXTENT_ELLIPSE = 1, /* q ≤ 9 */
-  CONIC_EXTENT_BOX = 2,     /* the box of that ellipse … */
-  CONIC_EXTENT_WHOLE_BOX,   /* … rounded up to whole pixels */
-  CONIC_EXTENT_SQUARE,      /* of the longer axis */
+  CONIC_EXTENT_ELLIPSE = 1,
+  CONIC_EXTENT_BOX = 2,   /* the box of that ellipse … */
+  CONIC_EXTENT_WHOLE_BOX, /* … rounded up to whole pixels */
+  CONIC_EXTENT_SQUARE,    /* of the longer axis */
   CONIC_EXTENT_WHOLE_SQUARE,
   CONIC_EXTENT_CIRCLE,
   CONIC_EXTENT_WHOLE_CIRCLE,
+  CONIC_EXTENT_LISTED, /* in the tiles that this box meets, … */
+  CONIC_EXTENT_WHOLE_LISTED,
+  CONIC_EXTENT_LISTED_SQUARE, /* or the square */
+  CONIC_EXTENT_WHOLE_LISTED_SQUARE,
   CONIC_EXTENT_TILES, /* inria's */
   CONIC_EXTENT_EXACT  /* no end, where the profile has one */
 } conic_planted_extent;
@@ -85,6 +89,8 @@ typedef struct conic_planted {
   int is_reversed;
   int key_bits; /* of the key's fraction that are kept; 0: all */
   conic_planted_extent extent;
+  float extent_sigmas;
+  size_t n_whole;    /* of the Gaussians, how many of the first are drawn; 0: all */
   float falloff_end; /* half of the q at which the falloff is 0; 0: it has no such end */
   int has_unit_volume;
   double least_z;    /* nearer means are left out */
@@ -102,7 +108,7 @@ typedef struct conic_planted {
   int axes_order; /* 1 to 5: another order of the three scales */
   float size;     /* multiplies scales */
   conic_planted_turn turn;
-  int weighs_twice;                        /* colours are multiplied by α² T */
+  int reweighs; /* 1: colours are multiplied by α² T, 2: depths, too; 3 and 4: by α T (1 − α) */
   conic_planted_transfer own_transfer;     /* of each Gaussian's own colour */
   const conic_gaussian_surfaces *surfaces; /* null: there are none */
   conic_planted_surfaces surfaces_are;
@@ -115,7 +121,7 @@ typedef struct conic_planted {
   int mirrors[2], moves[2];          /* moves: in whole pixels, and round the edges */
   int is_bgr, is_clipped, has_raw_z; /* raw: not divided by alpha */
   float behind[3];
-  int is_opaque;
+  int is_opaque, adds_whole; /* whole: the background is added everywhere, as if nothing hid it */
   conic_planted_alpha alpha;
   conic_planted_transfer transfer;
 } conic_planted;
@@ -127,7 +133,7 @@ typedef struct conic_suspect {
   double value;
 } conic_suspect;
 
-enum { CONIC_MOST_SUSPECTS = 320 };
+enum { CONIC_MOST_SUSPECTS = 400 };
 
 /* Fills in the mistakes that pictures drawn so could have; returns how many. Profiles come last. */
 int conic_suspects_of_gaussians(const conic_planted *right, conic_suspect suspects[CONIC_MOST_SUSPECTS]);

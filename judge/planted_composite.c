@@ -41,20 +41,31 @@ static conic_ray_meeting meet_plain_ray(const conic_kept_gaussian *k, float dx, 
                              (r->e[0] + r->e[1] * dx + r->e[2] * dy) * one_over, k->footprint.opacity};
 }
 
-/* Whether a pixel is within 3 standard deviations, as other programs cut them off. */
-static int is_in_extent(conic_planted_extent extent, const conic_gaussian_footprint *f, float dx, float dy) {
+/* Whether the tiles of a length, in pixels, from a centre hold a pixel, along an axis. */
+static int is_in_tiles(int pixel, float offset, float length, int tile) {
+  const float center = (float)pixel + 0.5f - offset, size = (float)tile;
+  const int at = pixel / tile;
+  return at >= (int)floorf((center - length) / size) && at < (int)ceilf((center + length) / size);
+}
+
+/* Whether a pixel is within some standard deviations, as other programs cut them off. */
+static int is_in_extent(const conic_planted *p, const conic_gaussian_footprint *f, const int at[2], float dx,
+                        float dy) {
+  const conic_planted_extent extent = p->extent;
   const float determinant = f->form[0] * f->form[2] - f->form[1] * f->form[1];
   float xx = f->form[2] / determinant, yy = f->form[0] / determinant, half = 0.5f * (xx + yy);
   float apart = half * half - 1.0f / determinant, longest = half + sqrtf(apart > 0.1f ? apart : 0.1f);
-  int is_box = extent == CONIC_EXTENT_BOX || extent == CONIC_EXTENT_WHOLE_BOX;
-  float x = 3.0f * sqrtf(is_box ? xx : longest), y = 3.0f * sqrtf(is_box ? yy : longest);
-  if (extent == CONIC_EXTENT_WHOLE_BOX || extent == CONIC_EXTENT_WHOLE_SQUARE || extent == CONIC_EXTENT_WHOLE_CIRCLE) {
+  const int is_listed = extent >= CONIC_EXTENT_LISTED, step = (int)(extent - CONIC_EXTENT_BOX) % 6;
+  const int is_box = step < 2, is_whole = step % 2, tile = conic_profile_tile(&p->rules, &p->camera);
+  float x = p->extent_sigmas * sqrtf(is_box ? xx : longest), y = p->extent_sigmas * sqrtf(is_box ? yy : longest);
+  if (is_whole) {
     x = ceilf(x);
     y = ceilf(y);
   }
   if (extent == CONIC_EXTENT_CIRCLE || extent == CONIC_EXTENT_WHOLE_CIRCLE)
     return dx * dx + dy * dy <= x * x;
-  return fabsf(dx) <= x && fabsf(dy) <= y;
+  return is_listed ? is_in_tiles(at[0], dx, x, tile) && is_in_tiles(at[1], dy, y, tile)
+                   : fabsf(dx) <= x && fabsf(dy) <= y;
 }
 
 /* Half of q, the depth and the opacity at the pixel. */
@@ -87,8 +98,8 @@ static conic_ray_meeting meet_kept(const conic_planted_frame *frame, const conic
                                   (size_t)(x / CONIC_GAUSSIAN_TILE)];
     return conic_meet_sight(&list, 0, place_in_tile(x, y));
   }
-  if (frame->planted->extent >= CONIC_EXTENT_BOX && frame->planted->extent <= CONIC_EXTENT_WHOLE_CIRCLE &&
-      !is_in_extent(frame->planted->extent, f, dx, dy))
+  if (frame->planted->extent >= CONIC_EXTENT_BOX && frame->planted->extent <= CONIC_EXTENT_WHOLE_LISTED_SQUARE &&
+      !is_in_extent(frame->planted, f, (const int[2]){x, y}, dx, dy))
     m.half_q = -1.0f;
   return m;
 }
@@ -103,7 +114,7 @@ static float planted_alpha(const conic_planted_frame *frame, const conic_ray_mee
   if (rules->fall_end > 0.0f)
     value = (value - rules->fall_end) * rules->fall_factor;
   if (!(m->half_q >= 0.0f) || (is_ray && !(m->z > 0.0f)) || (most > 0.0f && m->half_q > most) ||
-      (p->extent == CONIC_EXTENT_ELLIPSE && m->half_q > 4.5f) ||
+      (p->extent == CONIC_EXTENT_ELLIPSE && m->half_q > 0.5f * p->extent_sigmas * p->extent_sigmas) ||
       (rules->shape == CONIC_SHAPE_DISC && rules->disc_near > 0.0f && m->z < rules->disc_near))
     return -1.0f;
   if (p->falloff_end > 0.0f) {
@@ -122,8 +133,9 @@ static int composite_kept(const conic_planted_frame *frame, const conic_kept_gau
   const float before = s->T, after = before * (1.0f - alpha), w = alpha * before;
   if (after < rules->stop || (rules->is_beyond_stop && after == rules->stop))
     return 0;
-  const float of_color = frame->planted->weighs_twice > 0 ? alpha * w : w;
-  const float of_place = frame->planted->weighs_twice > 1 ? alpha * w : w;
+  const int how = frame->planted->reweighs;
+  const float again = how > 2 ? 1.0f - alpha : alpha;
+  const float of_color = how ? again * w : w, of_place = how && how % 2 == 0 ? again * w : w;
   for (int c = 0; c < 3; c++) {
     s->color[c] += of_color * k->footprint.color[c];
     s->normal[c] += of_place * k->normal[c];

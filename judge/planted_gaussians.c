@@ -310,7 +310,7 @@ static void keep_run(void *data, size_t i_run, int i_thread) {
   const size_t first = i_run * CONIC_PLANTED_RUN, left = j->set->count - first;
   const size_t n = left < CONIC_PLANTED_RUN ? left : CONIC_PLANTED_RUN;
   const conic_gaussians run = planted_read(j->planted, j->set, first, n, room->run);
-  for (size_t i = 0; i < n && !room->is_full; i++)
+  for (size_t i = 0; i < n && !room->is_full && (!j->planted->n_whole || first + i < j->planted->n_whole); i++)
     keep_one(j, &run, i, first, room);
 }
 

@@ -35,6 +35,7 @@ enum {
   OF_KEY_BITS,
   OF_WEIGHT,
   OF_ALPHA_LEAST,
+  OF_BATCH,
   OF_LIMIT,
   OF_SURFACES,
   OF_METHOD,
@@ -45,6 +46,7 @@ enum {
   OF_MOVE,
   OF_ALPHA, /* in finishing, from here on */
   OF_BACKGROUND,
+  OF_BACKDROP,
   OF_TRANSFER,
   OF_BGR,
   OF_CLIP,
@@ -60,6 +62,12 @@ typedef struct suspected {
   double value[19];
 } suspected;
 
+#define EXTENTS                                                                                                        \
+  CONIC_EXTENT_ELLIPSE, CONIC_EXTENT_BOX, CONIC_EXTENT_WHOLE_BOX, CONIC_EXTENT_SQUARE, CONIC_EXTENT_WHOLE_SQUARE,      \
+      CONIC_EXTENT_CIRCLE, CONIC_EXTENT_WHOLE_CIRCLE, CONIC_EXTENT_LISTED, CONIC_EXTENT_WHOLE_LISTED,                  \
+      CONIC_EXTENT_LISTED_SQUARE, CONIC_EXTENT_WHOLE_LISTED_SQUARE
+#define EACH(x) x, x, x, x, x, x, x, x, x, x, x
+
 static const suspected of_gaussians[] = {
     {"surfaces-behind", OF_SURFACES, 1, {CONIC_SURFACES_BEHIND_ALL}, {0.0}},
     {"surfaces-before", OF_SURFACES, 1, {CONIC_SURFACES_BEFORE_ALL}, {0.0}},
@@ -69,12 +77,9 @@ static const suspected of_gaussians[] = {
     {"dilation-0.1", OF_DILATION, 1, {0}, {0.1}},
     {"dilation-0.5", OF_DILATION, 1, {0}, {0.5}},
     {"dilation-1", OF_DILATION, 1, {0}, {1.0}},
-    {"extent-3-sigma",
-     OF_EXTENT,
-     8,
-     {CONIC_EXTENT_ELLIPSE, CONIC_EXTENT_BOX, CONIC_EXTENT_WHOLE_BOX, CONIC_EXTENT_SQUARE, CONIC_EXTENT_WHOLE_SQUARE,
-      CONIC_EXTENT_CIRCLE, CONIC_EXTENT_WHOLE_CIRCLE, CONIC_EXTENT_TILES},
-     {0.0}},
+    {"extent-3-sigma", OF_EXTENT, 12, {EXTENTS, CONIC_EXTENT_TILES}, {EACH(3.0), 3.0}},
+    {"extent-2-sigma", OF_EXTENT, 11, {EXTENTS}, {EACH(2.0)}},
+    {"extent-1-sigma", OF_EXTENT, 11, {EXTENTS}, {EACH(1.0)}},
     {"extent-exact", OF_EXTENT, 1, {CONIC_EXTENT_EXACT}, {0.0}},
     {"alpha-max-0.999", OF_ALPHA_MOST, 1, {0}, {0.999}},
     {"alpha-max-0.99", OF_ALPHA_MOST, 1, {0}, {0.99}},
@@ -117,6 +122,8 @@ static const suspected of_gaussians[] = {
     {"jacobian-sign", OF_TURN, 1, {CONIC_TURN_HALF}, {0.0}},
     {"view-rotation", OF_TURN, 2, {CONIC_TURN_NONE, CONIC_TURN_TRANSPOSED}, {0.0}},
     {"alpha-twice", OF_WEIGHT, 2, {1, 2}, {0.0}},
+    {"transmittance-after", OF_WEIGHT, 2, {3, 4}, {0.0}},
+    {"last-batch", OF_BATCH, 6, {32, 64, 128, 256, 512, 1024}, {0.0}},
     {"opacity-linear", OF_OPACITY, 3, {CONIC_READING_RAW, CONIC_READING_RAW_LIMITED, CONIC_READING_TWICE}, {0.0}},
     {"srgb-decoded", OF_OWN_TRANSFER, 1, {CONIC_TRANSFER_DECODED}, {0.0}},
     {"srgb-encoded", OF_OWN_TRANSFER, 1, {CONIC_TRANSFER_ENCODED}, {0.0}},
@@ -150,6 +157,7 @@ static const suspected of_all[] = {
     {"centre-ignored", OF_CENTER, 3, {3, 1, 2}, {0.0}},
     {"centre-flipped", OF_CENTER, 3, {4, 8, 12}, {0.0}},
     {"field-of-view", OF_FOCAL, 4, {0, 1, 2, 3}, {0.0}},
+    {"focal-exchanged", OF_FOCAL, 1, {4}, {0.0}},
     {"focal-length",
      OF_ZOOM,
      14,
@@ -168,15 +176,16 @@ static const suspected of_all[] = {
     {"premultiplied", OF_ALPHA, 2, {CONIC_ALPHA_MULTIPLIED, CONIC_ALPHA_DIVIDED}, {0.0}},
     {"background-white", OF_BACKGROUND, 2, {1, 0}, {1.0, 1.0}},
     {"background-black", OF_BACKGROUND, 2, {1, 0}, {0.0}},
+    {"background-twice", OF_BACKDROP, 2, {0, 1}, {0.0}},
 };
 
 static void change_focal(conic_camera *camera, int how) {
   const double fx = camera->fx, fy = camera->fy, width = camera->width, height = camera->height;
-  camera->fx = how == 1   ? fy
-               : how == 2 ? fy * width / height
-                          : fx; /* one angle for both sides, in pixels or by the
-                                   sides */
-  camera->fy = how == 0 ? fx : how == 3 ? fx * height / width : fy;
+  camera->fx = how == 1 || how == 4 ? fy
+               : how == 2           ? fy * width / height
+                                    : fx; /* one angle for both sides, in pixels or by the
+                         sides */
+  camera->fy = how == 0 || how == 4 ? fx : how == 3 ? fx * height / width : fy;
 }
 
 static void plant_profile(conic_planted *p, conic_gaussian_profile profile) {
@@ -196,8 +205,9 @@ static void plant_dilation(conic_planted *p, double value) {
     p->rules.dilation = value;
 }
 
-static void plant_extent(conic_planted *p, conic_planted_extent extent) {
+static void plant_extent(conic_planted *p, conic_planted_extent extent, double sigmas) {
   p->extent = extent;
+  p->extent_sigmas = (float)sigmas;
   if (extent == CONIC_EXTENT_TILES)
     p->rules.coverage = CONIC_COVERAGE_TILES;
   if (extent == CONIC_EXTENT_EXACT) {
@@ -291,7 +301,10 @@ static void plant_in_scene(const conic_suspect *s, conic_planted *p) {
     p->key_bits = s->how;
     break;
   case OF_WEIGHT:
-    p->weighs_twice = s->how;
+    p->reweighs = s->how;
+    break;
+  case OF_BATCH:
+    p->n_whole -= p->n_whole % (size_t)s->how;
     break;
   case OF_CROSS:
     p->changes_cross = 1;
@@ -337,7 +350,11 @@ static void plant_in_picture(const conic_suspect *s, conic_planted *p) {
     p->has_raw_z = 1;
   else if (s->kind == OF_TRANSFER)
     p->transfer = (conic_planted_transfer)s->how;
-  else {
+  else if (s->kind == OF_BACKDROP) {
+    p->adds_whole = s->how;
+    for (int c = 0; c < 3 && !s->how; c++)
+      p->behind[c] *= 2.0f;
+  } else {
     p->behind[0] = p->behind[1] = p->behind[2] = (float)s->value;
     p->is_opaque |= s->how;
   }
@@ -362,7 +379,7 @@ void conic_suspect_plant(const conic_suspect *s, conic_planted *p) {
     p->has_unit_volume = s->how;
     break;
   case OF_EXTENT:
-    plant_extent(p, (conic_planted_extent)s->how);
+    plant_extent(p, (conic_planted_extent)s->how, s->value);
     break;
   case OF_ORDER:
     p->order = (conic_planted_order)s->value;
@@ -388,6 +405,7 @@ void conic_suspect_plant(const conic_suspect *s, conic_planted *p) {
   case OF_MOVE:
   case OF_ALPHA:
   case OF_BACKGROUND:
+  case OF_BACKDROP:
   case OF_TRANSFER:
   case OF_BGR:
   case OF_CLIP:
@@ -488,6 +506,10 @@ static int is_mistake(const conic_planted *right, const conic_suspect *s) {
     return right->options.method != (conic_method)s->value;
   case OF_SLIP:
     return s->how == CONIC_SLIP_AMPLITUDE ? right->options.prefilter > 0.0f : right->options.passes != 1;
+  case OF_BATCH:
+    return right->n_whole % (size_t)s->how != 0 && right->n_whole > (size_t)s->how;
+  case OF_BACKDROP:
+    return right->behind[0] != 0.0f || right->behind[1] != 0.0f || right->behind[2] != 0.0f;
   case OF_BACKGROUND:
     return right->behind[0] != (float)s->value || right->behind[1] != (float)s->value ||
            right->behind[2] != (float)s->value;

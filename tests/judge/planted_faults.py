@@ -18,6 +18,15 @@ import types
 
 import numpy as np
 
+def listed(sigmas, length="np.ceil(np.sqrt(np.linalg.eigvalsh(covariance[i])[-1]) * %g)"):
+    """Gaussians only in the tiles that a box of so many standard deviations meets."""
+    length = length % sigmas if "%" in length else f"{sigmas} * {length}"
+    return [("is_seen = (q >= 0)", f"r = {length}\n"
+             "        at = np.stack((X, Y)) // 16 - np.floor((center[i] - r) / 16)[:, None, None]\n"
+             "        n = np.ceil((center[i] + r) / 16) - np.floor((center[i] - r) / 16)\n"
+             "        is_seen = ((at >= 0) & (at < n[:, None, None])).all(0) & (q >= 0)")]
+
+
 # name: (what may be said first, [(text, other text) …])
 IN_TEXT = {
     "dilation-0": ("dilation-0", [("+ 0.3 * np.eye(2)", "")]),
@@ -25,6 +34,19 @@ IN_TEXT = {
     "dilation-half": ("dilation-0.5", [("+ 0.3 * np.eye(2)", "+ 0.5 * np.eye(2)")]),
     "alpha-squared-weight": ("alpha-twice", [("weight = np.where(is_seen, alpha * T, F(0))",
                                    "weight = np.where(is_seen, alpha * alpha * T, F(0))")]),
+    "weight-after": ("transmittance-after", [("weight = np.where(is_seen, alpha * T, F(0))",
+                                              "weight = np.where(is_seen, alpha * after, F(0))")]),
+    "last-batch": ("last-batch", [("        if z[i] < 0.01:", "        if z[i] < 0.01 or i >= len(z) // 64 * 64:")]),
+    "lists-1-sigma": ("extent-1-sigma", listed(1)),
+    "lists-2-sigma": ("extent-2-sigma", listed(2)),
+    "lists-2-sigma-box": ("extent-2-sigma", listed(2, "np.sqrt(np.diag(covariance[i]))")),
+    "ends-2-sigma": ("extent-2-sigma", [("is_seen = (q >= 0)", "is_seen = (q >= 0) & (q <= 2)")]),
+    "focal-exchanged": ("focal-exchanged", [("(\"width\", \"height\", \"fx\", \"fy\", \"cx\", \"cy\"))",
+                                             "(\"width\", \"height\", \"fy\", \"fx\", \"cx\", \"cy\"))")]),
+    "background-twice": ("background-twice", [("rgb += T[..., None] *", "rgb += 2 * T[..., None] *")]),
+    "background-whole": ("background-twice", [("rgb += T[..., None] *", "rgb +=")]),
+    "background-forgotten": ("background-black", [("rgb += T[..., None] *", "rgb += 0 *")]),
+    "background-right": ("", []),
     "no-half": ("sh-offset", [(".sum(1) + 0.5)", ".sum(1))")]),
     "sh-direction": ("sh-direction", [("directions = means + R.T @ t", "directions = -(means + R.T @ t)")]),
     "sh-not-normalised": ("sh-direction", [("directions / np.linalg.norm(directions, axis=1, keepdims=True)",
@@ -199,11 +221,11 @@ def look(i, turn=0.0):
             "cy": 24.0 - 1.7 * i, "world_to_camera": view.tolist()}
 
 
-def judged(conic, work, camera, rgba, depth):
+def judged(conic, work, camera, background, rgba, depth):
     np.savez(work + "/p.npz", rgba=rgba.astype(np.float32), Z=depth.astype(np.float32))
     json.dump(camera, open(work + "/c.json", "w"))
     got = subprocess.run([conic, "judge", work + "/s.ply", "--camera", work + "/c.json", "--profile", "gsplat-1.6",
-                          "--picture", work + "/p.npz", "--json", "-"], capture_output=True, text=True)
+                          *(["--background", ",".join(map(str, background))] if any(background) else []), "--picture", work + "/p.npz", "--json", "-"], capture_output=True, text=True)
     if got.returncode not in (0, 1):
         sys.exit(got.stderr)
     return json.loads(got.stdout)
@@ -274,12 +296,15 @@ def main(source, conic, scenes="5", *only):
             for i in range(int(scenes)):
                 make_scene(conic, work + "/s.ply", i + 1)
                 camera = look(i)
+                background = [0.3, 0.6, 0.1] if name.startswith("background-") else [0, 0, 0]
                 module = renderer(source, how if isinstance(how, list) else [])
                 ply = module.read_ply(work + "/s.ply")
-                rgba, depth = module.draw(ply, look(i, 0.02) if how is None else camera, [0, 0, 0])
+                rgba, depth = module.draw(ply, look(i, 0.02) if how is None else camera, background)
                 if callable(how):
                     rgba, depth = how(rgba, depth)
-                found = judged(conic, work, camera, rgba, depth)
+                if any(background):
+                    rgba[..., 3] = 1
+                found = judged(conic, work, camera, background, rgba, depth)
                 seconds += found["seconds"]["total"]
                 said = [d["name"] for d in found["diagnosis"]]
                 said += [d["kind"] for d in found.get("where", [])]
