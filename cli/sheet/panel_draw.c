@@ -35,16 +35,20 @@ static conic_camera camera_of(const cli_sheet_job *job, const cli_panel *panel, 
   return camera;
 }
 
-/* On white paper. Of a section, what is cut is dark, and what lies behind it light, or not there. */
+/* On white paper. Of a section, what is cut is dark, and what lies behind it light, or not there. What covers no middle
+ * of a pixel has no depth, and is not cut. */
 static void put_on_paper(const cli_sheet_job *job, const cli_panel *panel, const conic_image *image) {
   float *rgba = image->planes[CONIC_PLANE_RGBA];
   const float *z = image->planes[CONIC_PLANE_Z];
   const double cut = stand_back(panel) + panel->depth, last = cut + job->beyond;
   for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++) {
     float *pixel = rgba + 4 * i, share = 1.0f, paper = 0.0f;
-    if (panel->kind == CLI_PANEL_SECTION && (double)z[i] <= cut)
-      share = 0.06f;
-    else if (panel->kind == CLI_PANEL_SECTION && (double)z[i] <= last)
+    const double depth = panel->kind != CLI_PANEL_SECTION ? 0.0
+                         : z[i] > 0.0f                    ? (double)z[i]
+                                                          : stand_back(panel) + panel->box_away[1] - panel->near_away;
+    if (panel->kind == CLI_PANEL_SECTION && depth <= cut)
+      share = 0.0f;
+    else if (panel->kind == CLI_PANEL_SECTION && depth <= last)
       share = 0.6f, paper = 0.4f;
     else if (panel->kind == CLI_PANEL_SECTION)
       memset(pixel, 0, 4 * sizeof *pixel);
@@ -105,8 +109,35 @@ static conic_status draw_rows(cli_sheet_job *job, cli_panel *panel, const int ke
   return status;
 }
 
+/* On white paper, each of its pixels as a square. */
+static conic_status draw_legend(cli_sheet_job *job, cli_panel *panel) {
+  conic_context *context = job->session->context;
+  const conic_samples_layout bytes = {.n_channels = 3, .sample_bytes = 1};
+  const size_t width = (size_t)job->legend.width, height = (size_t)job->legend.height, n = (size_t)job->legend_pixels;
+  unsigned char *from, *row;
+  conic_status status = conic_memory_allocate_these(context, CONIC_ROOM(from, 3 * width * height),
+                                                    CONIC_ROOM(row, 3 * (size_t)panel->width));
+  if (status == CONIC_OK) {
+    put_on_paper(job, panel, &job->legend);
+    conic_samples_from_rgba(context, job->legend.planes[CONIC_PLANE_RGBA], job->legend.width, job->legend.height, bytes,
+                            from);
+  }
+  if (status == CONIC_OK)
+    status = cli_top_store_open(context, job->output, (size_t)panel->width, 3, (size_t)panel->height,
+                                job->memory_bytes / 8, &panel->store);
+  for (size_t y = 0; y < (size_t)panel->height && status == CONIC_OK; y++) {
+    for (size_t x = 0; x < (size_t)panel->width; x++)
+      memcpy(row + 3 * x, from + 3 * (y / n * width + x / n), 3);
+    status = cli_top_store_put(&panel->store, 0, y, row, (size_t)panel->width);
+  }
+  conic_memory_release_these(context, from, row);
+  return status;
+}
+
 conic_status cli_panel_draw(cli_sheet_job *job, cli_panel *panel) {
   cli_render_job *scene = &job->scene;
+  if (panel->kind == CLI_PANEL_LEGEND)
+    return draw_legend(job, panel);
   enum { PIXEL_BYTES = 4 * (4 + 1 + 3 + 3) + 3 }; /* rgba, Z and, where light is hidden, N and albedo */
   uint64_t row_bytes = (uint64_t)panel->width * PIXEL_BYTES;
   uint64_t rows = job->memory_bytes / 2 / row_bytes / BLOCK_ROWS * BLOCK_ROWS;

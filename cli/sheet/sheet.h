@@ -9,7 +9,12 @@
 
 enum { CLI_MOST_PANELS = 24 };
 
-typedef enum cli_panel_kind { CLI_PANEL_PLAN = 0, CLI_PANEL_FACADE = 1, CLI_PANEL_SECTION = 2 } cli_panel_kind;
+typedef enum cli_panel_kind {
+  CLI_PANEL_PLAN = 0,
+  CLI_PANEL_FACADE = 1,
+  CLI_PANEL_SECTION = 2,
+  CLI_PANEL_LEGEND
+} cli_panel_kind;
 
 typedef struct cli_panel {
   /* What was asked for. */
@@ -37,6 +42,8 @@ typedef struct cli_sheet_job {
   const char *output, *title;
   cli_panel panels[CLI_MOST_PANELS];
   int n_panels;
+  conic_image legend; /* of values that are coloured: the last panel, several pixels a pixel */
+  int legend_pixels;
   double scale; /* 1:scale; 0: as fits */
   double gsd;   /* world units of a pixel; 0: by the scale */
   double dpi, paper_mm[2];

@@ -1,10 +1,12 @@
 /* conic sheet: plans, façades and sections at a scale, on paper. */
+#include "cli/color_options.h"
 #include "cli/command.h"
 #include "cli/outputs.h"
 #include "cli/render/fill_shot.h"
 #include "cli/render/units.h"
 #include "cli/scene/light_options.h"
 #include "cli/sheet/sheet.h"
+#include "core/coloring/legend.h"
 #include "core/files/file.h"
 #include "source/top/top_view.h"
 
@@ -86,10 +88,23 @@ static conic_status know_world(cli_sheet_job *job) {
   return status;
 }
 
+/* What the colours of values mean, where they were asked for. */
+static conic_status add_legend(cli_sheet_job *job) {
+  const conic_coloring *coloring = conic_source_coloring(job->scene.source);
+  if (!coloring || !coloring->field[0] || !cli_color_is_asked(&job->scene.coloring) || job->n_panels == CLI_MOST_PANELS)
+    return CONIC_OK;
+  enum { DOTS_A_PIXEL = 150 };
+  job->legend_pixels = job->dpi > DOTS_A_PIXEL ? (int)(job->dpi / DOTS_A_PIXEL + 0.5) : 1;
+  job->panels[job->n_panels++] = (cli_panel){.kind = CLI_PANEL_LEGEND};
+  return conic_legend_make(job->session->context, coloring, job->unit, &job->legend);
+}
+
 static conic_status draw_panels(cli_sheet_job *job) {
   enum { USUAL_STOPS = 4 };
   cli_render_job *scene = &job->scene;
   conic_status status = know_world(job);
+  if (status == CONIC_OK)
+    status = add_legend(job);
   if (status == CONIC_OK)
     status = cli_sheet_place(job);
   if (status == CONIC_OK)
@@ -131,7 +146,7 @@ static void report_sheet(cli_json *json, const void *cookie) {
   if (job->reference.epsg)
     cli_json_count(json, "epsg", job->reference.epsg);
   cli_json_array(json, "panels");
-  for (int i = 0; i < job->n_panels; i++) {
+  for (int i = 0; i < job->n_panels && job->panels[i].kind != CLI_PANEL_LEGEND; i++) {
     const cli_panel *panel = &job->panels[i];
     cli_json_object(json, NULL);
     cli_json_texts(json, NULL, {"kind", kinds[panel->kind]}, {"caption", panel->caption});
@@ -172,6 +187,7 @@ static int make_sheet(cli_session *session, void *cookie) {
   for (int i = 0; i < job->n_panels; i++)
     cli_top_store_close(&job->panels[i].store);
   cli_strokes_release(&job->strokes);
+  conic_image_release(session->context, &job->legend);
   conic_georeference_release(session->context, &job->reference);
   return exit_code;
 }
@@ -234,10 +250,10 @@ static int run_sheet(cli_session *session, int argc, char **argv) {
        "X,Y:X,Y, of which A is on the left; may be repeated",
        .parse = parse_facade, .may_repeat = 1},
       {"section", CLI_PARSED, &job, "A:B[:DEPTH]",
-       "cut along a line X,Y:X,Y and seen level, A on the left; what lies up to DEPTH behind it is dark [0.7 mm on "
-       "paper], all else behind it light; may be repeated",
+       "cut along a line X,Y:X,Y and seen level, A on the left; what lies up to DEPTH behind it is black [0.7 mm on "
+       "paper], all else behind it light, and triangles are cut in a strong line; may be repeated",
        .parse = parse_section, .may_repeat = 1},
-      {"beyond", CLI_NUMBER, &job.beyond, "D", "of a section, what lies more than D behind the dark is left out [all]",
+      {"beyond", CLI_NUMBER, &job.beyond, "D", "of a section, what lies more than D behind the black is left out [all]",
        0, 1e29},
       {"scale", CLI_PARSED, &job.scale, "1:N", "the scale [the first usual one that fits on the paper, or on an A3]",
        .parse = parse_scale},

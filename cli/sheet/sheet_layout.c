@@ -20,6 +20,11 @@ static int size_panels(cli_sheet_job *job) {
   for (int i = 0; i < job->n_panels; i++) {
     cli_panel *panel = &job->panels[i];
     double free_px = ceil(1.5 * job->ppmm), size[2]; /* outlines stand free of the frame, but where a line ends */
+    if (panel->kind == CLI_PANEL_LEGEND) {
+      panel->width = job->legend_pixels * job->legend.width;
+      panel->height = job->legend_pixels * job->legend.height;
+      continue;
+    }
     double pad[2] = {panel->has_line ? 0.0 : free_px, free_px};
     for (int axis = 0; axis < 2; axis++) {
       double extent = (panel->high[axis] - panel->low[axis]) * job->ppu;

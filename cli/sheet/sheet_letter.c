@@ -124,6 +124,8 @@ static int clip_line(const cli_panel *panel, const double a[2], const double b[2
   for (int axis = 0; axis < 2; axis++) {
     double step = b[axis] - a[axis];
     double first = (low[axis] - a[axis]) / step, last = (high[axis] - a[axis]) / step;
+    if (step == 0.0 && (a[axis] < low[axis] || a[axis] > high[axis]))
+      return 0;
     if (step == 0.0)
       continue;
     t[0] = fmax(t[0], fmin(first, last));
@@ -172,8 +174,41 @@ static void draw_line_on_plan(const lettering *l, const cli_panel *plan, const c
   }
 }
 
+/* Where a section cuts triangles, which have no thickness by themselves: what is solid has its outline. */
+static void draw_cut(const lettering *l, const cli_panel *panel) {
+  const conic_triangles *set = conic_source_chosen(l->job->scene.source)->drawing.triangles;
+  for (size_t i = 0; set && i < set->count; i++) {
+    double at[3][3], ends[2][2], t[2]; /* to the right, up and away from the plane */
+    int n = 0;
+    for (int k = 0; k < 3; k++) {
+      const uint32_t vertex = set->corners[i][k];
+      for (int axis = 0; axis < 3; axis++) {
+        at[k][axis] = axis == 2 ? -panel->near_away : 0.0;
+        for (int c = 0; c < 3; c++)
+          at[k][axis] += panel->axes[axis][c] * (set->origin[c] + (double)set->position[c][vertex]);
+      }
+    }
+    for (int k = 0; k < 3 && n < 2; k++) {
+      const double *a = at[k], *b = at[(k + 1) % 3], share = a[2] / (a[2] - b[2]);
+      if ((a[2] < 0.0) == (b[2] < 0.0))
+        continue;
+      ends[n][0] = panel->x + (a[0] + share * (b[0] - a[0]) - panel->left) * l->job->ppu;
+      ends[n++][1] = panel->y + (panel->top - a[1] - share * (b[1] - a[1])) * l->job->ppu;
+    }
+    if (n == 2 && clip_line(panel, ends[0], ends[1], t)) {
+      const double along[2] = {ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]};
+      cli_strokes_line(&l->job->strokes, ends[0][0] + t[0] * along[0], ends[0][1] + t[0] * along[1],
+                       ends[0][0] + t[1] * along[0], ends[0][1] + t[1] * along[1], strong * l->mm, 0.0f);
+    }
+  }
+}
+
 static void letter_panel(const lettering *l, const cli_panel *panel) {
   const cli_sheet_job *job = l->job;
+  if (panel->kind == CLI_PANEL_LEGEND)
+    return;
+  if (panel->kind == CLI_PANEL_SECTION)
+    draw_cut(l, panel);
   draw_frame(l, panel->x, panel->y, panel->width, panel->height, medium);
   draw_marks(l, panel);
   write_text(l, panel->caption, panel->x, panel->y - 2.0 * l->mm, plain_text, 0.0, 0);
@@ -233,7 +268,11 @@ static void describe_sheet(const cli_sheet_job *job, char *text, size_t room) {
   if (reference->epsg)
     snprintf(system, sizeof system, "   EPSG:%u", reference->epsg);
   const char *name = conic_file_name(job->scene.inputs[0]);
-  snprintf(text, room, "%.80s%s   coordinates in %s", strcmp(name, job->title) ? name : "", system, job->unit);
+  const conic_source_scale *scale = conic_source_measure(job->scene.source);
+  char wide[96] = ""; /* as a splat reaches beyond the last point */
+  if (scale->n_splats && scale->splat_length > 0.0)
+    snprintf(wide, sizeof wide, "   outlines of points lie about %.2g %s outside", scale->splat_length, job->unit);
+  snprintf(text, room, "%.80s%s   coordinates in %s%s", strcmp(name, job->title) ? name : "", system, job->unit, wide);
 }
 
 static void letter_foot(const lettering *l) {

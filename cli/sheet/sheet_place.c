@@ -132,6 +132,7 @@ conic_status cli_sheet_place(cli_sheet_job *job) {
   for (int i = 0; i < 2; i++)
     job->axis_signs[i] = sign_along(plan[i]);
   for (int i = 0; i < job->n_panels && status == CONIC_OK; i++)
-    status = place_panel(job, &job->panels[i], (const double(*)[3])plan, &n_lines);
+    if (job->panels[i].kind != CLI_PANEL_LEGEND)
+      status = place_panel(job, &job->panels[i], (const double(*)[3])plan, &n_lines);
   return status;
 }

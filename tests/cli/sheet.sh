@@ -39,6 +39,23 @@ cmp -s one.pdf two.pdf || fail "memory or threads change the page"
 at=$(tail -n 2 one.pdf | head -n 1)
 [[ $(tail -c +$((at + 1)) one.pdf | head -c 4) == xref ]] || fail "the table of the PDF is not at $at"
 
+# A section cuts triangles in a strong line, and with --beyond 0 shows nothing of what is behind: not its edges, either.
+for top in 5 6; do
+  printf 'v %s\n' '2 -1 0' '2 1 0' '2 1 3' '2 -1 3' '1 9 0' '9 9 0' "$top.3 9 3" > behind.obj
+  printf 'f %s\n' '1 2 3' '1 3 4' '5 6 7' >> behind.obj
+  run 0 sheet behind.obj --up z --section 0,0:10,0 --beyond 0 --scale 1:200 -o behind$top.png
+  run 0 sheet behind.obj --up z --section 0,0:10,0 --beyond 0 --scale 1:200 -o behind.pdf
+  run 0 sheet behind.obj --up z --facade 0 --scale 1:200 -o front.pdf
+done
+cmp behind5.png behind6.png || fail "--beyond 0 shows what is behind"
+grep -aq '^4\.134 w 1 J 0\.000 G$' behind.pdf || fail "no line where triangles are cut"
+! grep -aq '^4\.134 w 1 J 0\.000 G$' front.pdf || fail "a facade is cut"
+
+# Colours of values are explained, and the panels keep their places.
+run 0 "${sheet[@]}" --color-by height -o high.pdf --json high.json
+[[ $(grep -ac '/Subtype */Image' high.pdf) -eq $(($(grep -ac '/Subtype */Image' one.pdf) + 1)) ]] || fail "no legend"
+[[ $(grep -c '"kind"' high.json) -eq 3 ]] || fail "the legend is a drawing: $(cat high.json)"
+
 for options in "" "-o x.exr" "-o x.png --scale 0:1" "-o x.png --scale 1:10 --gsd 1" "-o x.png --facade 1,2" "-o x.png --section 1,1:1,1" \
   "-o x.png --beyond 1" "-o x.png --paper A9" "-o x.png --paper A5 --scale 2:1" "-o x.png --size 20x20" "-o x.png --north 9 --section 0,0:1,1" \
   "-o land.ply" "-o x.png --scale 1000:1"; do
