@@ -49,7 +49,17 @@ const disk = {
   rename: (from, to) => tried(() => fs.renameSync(from, to)),
 };
 
+/* Who reads what is printed may have enough of it: that ends the program, as it does elsewhere. */
+function print(descriptor, bytes) {
+  try {
+    return fs.writeSync(descriptor, bytes);
+  } catch (error) {
+    if (error.code === 'EPIPE')
+      process.exit(128 + 13);
+    throw error;
+  }
+}
+
 const [program, ...words] = process.argv.slice(2);
 const module = await WebAssembly.compile(fs.readFileSync(program));
-process.exitCode = await run(module, ['conic', ...words], disk, (descriptor, bytes) => fs.writeSync(descriptor, bytes),
-  ['/', process.cwd()]);
+process.exitCode = await run(module, ['conic', ...words], disk, print, ['/', process.cwd()]);

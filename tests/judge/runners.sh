@@ -40,6 +40,17 @@ END
   wait $server || fail "the server ends with $?"
 fi
 
+# conic in WebAssembly ends without a word where nobody reads on: here a program that prints zeros without end.
+if command -v node > /dev/null; then
+  {
+    printf '\0asm\1\0\0\0\1\x0c\2\x60\4\x7f\x7f\x7f\x7f\1\x7f\x60\0\0\2\x23\1\x16wasi_snapshot_preview1'
+    printf '\x08fd_write\0\0\3\2\1\1\5\3\1\0\1\7\x13\2\6memory\2\0\6_start\0\1\x0a\x14\1\x12\0\3\x40\x41'
+    printf '\1\x41\0\x41\1\x41\x08\x10\0\x1a\x0c\0\x0b\x0b\x0b\x0e\1\0\x41\0\x0b\x08\x10\0\0\0\0\x10\0\0'
+  } > zeros.wasm
+  { timeout 60 node "$1/examples/web/conic.mjs" zeros.wasm 2> told; echo $? > code; } | head -c 1 > one
+  [[ $(stat -c %s one) -eq 1 && $(cat code) -eq 141 && ! -s told ]] || fail "a closed pipe: $(cat code) $(head -3 told)"
+fi
+
 # The recipes: their lines of conic and of a renderer, as they stand, with conic on the path.
 mkdir -p path tests && ln -s "$conic" path/conic
 for recipe in github gitlab; do
