@@ -53,6 +53,13 @@ int cli_color_check(const cli_session *session, conic_coloring_options *coloring
   return coloring->ramp ? check_ramp(session, coloring->ramp) : CLI_DONE;
 }
 
+int cli_color_check_texture(const cli_session *session, const conic_coloring_options *coloring, const char *texture) {
+  if (!texture || !cli_color_is_asked(coloring))
+    return CLI_DONE;
+  return cli_usage("%s: --texture has no effect: --color-by %s colours the surface in its place", session->command,
+                   coloring->by);
+}
+
 int cli_color_is_asked(const conic_coloring_options *coloring) {
   return coloring->by && strcmp(coloring->by, "rgb") != 0 && strcmp(coloring->by, "auto") != 0;
 }

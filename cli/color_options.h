@@ -43,6 +43,9 @@ int cli_parse_ramp(const char *text, void *value);
  * Returns CLI_DONE, or CLI_USAGE after a message. */
 int cli_color_check(const cli_session *session, conic_coloring_options *coloring, int is_auto);
 
+/* That no texture is named, null: none, whose colours would be others. */
+int cli_color_check_texture(const cli_session *session, const conic_coloring_options *coloring, const char *texture);
+
 /* Whether colours are to be made of something else than colours. */
 int cli_color_is_asked(const conic_coloring_options *coloring);
 

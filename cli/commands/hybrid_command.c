@@ -203,6 +203,8 @@ static int run_hybrid(cli_session *session, int argc, char **argv) {
   job.options.sampling = (conic_sampling)sampling;
   if (exit_code == CLI_DONE && job.is_smooth && job.is_crease_given)
     exit_code = cli_usage("hybrid: --smooth rounds all edges, --crease those up to an angle; give one of both");
+  if (exit_code == CLI_DONE)
+    exit_code = cli_color_check_texture(session, &job.coloring.options, job.texture);
   if (exit_code == CLI_DONE && job.memory_mib && (job.texture || job.coloring.options.by))
     exit_code = cli_usage("hybrid: with --memory colours are the vertices' own, not by --texture or --color-by");
   if (exit_code == CLI_DONE)

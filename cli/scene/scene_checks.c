@@ -17,6 +17,8 @@ static int is_colored_by_value(const cli_render_job *job) {
 /* Colours that are made of something need all of it at once. */
 static int check_colors(const cli_session *session, cli_scene_words *words, cli_render_job *job) {
   int answer = cli_color_check(session, &job->coloring, !job->is_plain);
+  if (answer == CLI_DONE)
+    answer = cli_color_check_texture(session, &job->coloring, job->opening.texture_path);
   if (!job->coloring.by)
     return answer;
   job->opening.coloring = &job->coloring;

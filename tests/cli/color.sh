@@ -113,6 +113,15 @@ for as in mesh hybrid; do
 done
 run 3 render mesh.obj -o no.pfm --as mesh --color-by quality
 
+# A texture that is not to be seen.
+printf 'v %s\n' '0 0 0' '1 0 0' '0 1 1' > mesh.obj
+echo 'f 1 2 3' >> mesh.obj
+for command in "render mesh.obj -o x.png" "hybrid mesh.obj -o x.chy"; do
+  # shellcheck disable=SC2086 # several words
+  run 2 $command --texture x.jpg --color-by height
+  grep -q -- '--texture has no effect: --color-by height colours' err || fail "$command: $(cat err)"
+done
+
 # What there is to colour by.
 run 0 info slope.ply --check --json info.json
 grep -q '"name": "scalar_Classification"' info.json || fail "info: the fields"
