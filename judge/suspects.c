@@ -179,12 +179,10 @@ static const suspected of_all[] = {
     {"background-twice", OF_BACKDROP, 2, {0, 1}, {0.0}},
 };
 
+/* One of them, or one angle, for both sides, in pixels or by the sides; or each the other one. */
 static void change_focal(conic_camera *camera, int how) {
   const double fx = camera->fx, fy = camera->fy, width = camera->width, height = camera->height;
-  camera->fx = how == 1 || how == 4 ? fy
-               : how == 2           ? fy * width / height
-                                    : fx; /* one angle for both sides, in pixels or by the
-                         sides */
+  camera->fx = how == 1 || how == 4 ? fy : how == 2 ? fy * width / height : fx;
   camera->fy = how == 0 || how == 4 ? fx : how == 3 ? fx * height / width : fy;
 }
 
