@@ -122,10 +122,8 @@ static conic_status plan_views(gather_band *b) {
 /* --- looking up --- */
 
 static void widen_box(gather_box *box, const float at[2]) {
-  for (int axis = 0; axis < 2; axis++) {
-    box->low[axis] = at[axis] < box->low[axis] ? at[axis] : box->low[axis];
-    box->high[axis] = at[axis] > box->high[axis] ? at[axis] : box->high[axis];
-  }
+  for (int axis = 0; axis < 2; axis++)
+    CONIC_WIDEN(box->low[axis], box->high[axis], at[axis], at[axis]);
 }
 
 static void look_up_row(void *data, size_t i_row) {
@@ -249,10 +247,8 @@ static conic_status gather_band_rows(gather_band *b) {
     gather_box box = b->boxes[b->i_side];
     for (size_t row = 1; row < n_fine_rows; row++) {
       const gather_box *other = &b->boxes[row * CONIC_CUBE_SIDES + (size_t)b->i_side];
-      for (int axis = 0; axis < 2; axis++) {
-        box.low[axis] = other->low[axis] < box.low[axis] ? other->low[axis] : box.low[axis];
-        box.high[axis] = other->high[axis] > box.high[axis] ? other->high[axis] : box.high[axis];
-      }
+      for (int axis = 0; axis < 2; axis++)
+        CONIC_WIDEN(box.low[axis], box.high[axis], other->low[axis], other->high[axis]);
     }
     if (box.low[0] <= box.high[0])
       status = draw_side(b, &box);

@@ -63,8 +63,7 @@ static void find_far_depths(const conic_gather_options *o, double depths[2]) {
     double z = o->camera.cam_from_world[2][3];
     for (int axis = 0; axis < 3; axis++)
       z += o->camera.cam_from_world[2][axis] * (corner >> axis & 1 ? o->maximum : o->minimum)[axis];
-    depths[0] = z < depths[0] ? z : depths[0];
-    depths[1] = z > depths[1] ? z : depths[1];
+    CONIC_WIDEN(depths[0], depths[1], z, z);
   }
 }
 

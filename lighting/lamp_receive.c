@@ -49,23 +49,18 @@ static void lamp_side_add(lamp_side *side, int i_side, const float position[3]) 
     return;
   for (int i = 0; i < 2; i++) {
     double place = conic_dot(rows[i], p) / z;
-    side->low[i] = place < side->low[i] ? place : side->low[i];
-    side->high[i] = place > side->high[i] ? place : side->high[i];
+    CONIC_WIDEN(side->low[i], side->high[i], place, place);
   }
-  side->nearest = z < side->nearest ? z : side->nearest;
-  side->farthest = z > side->farthest ? z : side->farthest;
+  CONIC_WIDEN(side->nearest, side->farthest, z, z);
   side->sum_z += z;
   side->count++;
 }
 
 /* Adds the extent of another. */
 static void lamp_side_join(lamp_side *side, const lamp_side *other) {
-  for (int i = 0; i < 2; i++) {
-    side->low[i] = other->low[i] < side->low[i] ? other->low[i] : side->low[i];
-    side->high[i] = other->high[i] > side->high[i] ? other->high[i] : side->high[i];
-  }
-  side->nearest = other->nearest < side->nearest ? other->nearest : side->nearest;
-  side->farthest = other->farthest > side->farthest ? other->farthest : side->farthest;
+  for (int i = 0; i < 2; i++)
+    CONIC_WIDEN(side->low[i], side->high[i], other->low[i], other->high[i]);
+  CONIC_WIDEN(side->nearest, side->farthest, other->nearest, other->farthest);
   side->sum_z += other->sum_z;
   side->count += other->count;
 }

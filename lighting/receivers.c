@@ -136,10 +136,8 @@ static void plan_receivers(receiver_rows *r) {
     row->first = all.count;
     all.count += row->count;
     all.spacing += row->spacing;
-    for (int axis = 0; axis < 3; axis++) {
-      all.low[axis] = row->low[axis] < all.low[axis] ? row->low[axis] : all.low[axis];
-      all.high[axis] = row->high[axis] > all.high[axis] ? row->high[axis] : all.high[axis];
-    }
+    for (int axis = 0; axis < 3; axis++)
+      CONIC_WIDEN(all.low[axis], all.high[axis], row->low[axis], row->high[axis]);
   }
   r->to->count = all.count;
   r->to->spacing = all.count ? all.spacing / (double)all.count / sqrt(r->camera->fx * r->camera->fy) : 0.0;

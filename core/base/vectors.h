@@ -63,12 +63,14 @@ static inline void conic_subtract(const double a[3], const double b[3], double d
     difference[axis] = a[axis] - b[axis];
 }
 
+/* Widens low and high until they hold what is from `from` to `to`; by what is no number they stay. */
+#define CONIC_WIDEN(low, high, from, to)                                                                               \
+  ((low) = (from) < (low) ? (from) : (low), (high) = (to) > (high) ? (to) : (high))
+
 /* Widens a box by a place; one of no place is from HUGE_VAL to -HUGE_VAL. */
 static inline void conic_widen_box(double low[3], double high[3], const double at[3]) {
-  for (int axis = 0; axis < 3; axis++) {
-    low[axis] = at[axis] < low[axis] ? at[axis] : low[axis];
-    high[axis] = at[axis] > high[axis] ? at[axis] : high[axis];
-  }
+  for (int axis = 0; axis < 3; axis++)
+    CONIC_WIDEN(low[axis], high[axis], at[axis], at[axis]);
 }
 
 /* Makes v a unit vector. Returns 0, with v zero, where it has no direction. */

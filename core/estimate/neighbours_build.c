@@ -1,6 +1,7 @@
 /* Builds the kd-tree: coincident points are joined, then ranges are halved across their longest side. */
 
 #include "core/base/random.h"
+#include "core/base/vectors.h"
 #include "core/estimate/neighbours.h"
 #include "core/estimate/places.h"
 
@@ -131,8 +132,7 @@ static void bound_box(const point_record *records, size_t n, float box[6]) {
   for (size_t i = 1; i < n; i++)
     for (int axis = 0; axis < 3; axis++) {
       float value = records[i].position[axis];
-      box[axis] = value < box[axis] ? value : box[axis];
-      box[3 + axis] = value > box[3 + axis] ? value : box[3 + axis];
+      CONIC_WIDEN(box[axis], box[3 + axis], value, value);
     }
 }
 

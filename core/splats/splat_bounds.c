@@ -1,6 +1,7 @@
 #include <math.h>
 
 #include "core/base/base.h"
+#include "core/base/vectors.h"
 #include "core/lanes/lanes.h"
 #include "core/splats/columns.h"
 #include "core/splats/splats_gather.h"
@@ -30,10 +31,8 @@ static size_t bound_columns(float *const position[3], size_t n, float low[3], fl
     }
   }
   for (int axis = 0; axis < 3; axis++)
-    for (int lane = 0; lane < CONIC_LANES; lane++) {
-      low[axis] = lows[axis][lane] < low[axis] ? lows[axis][lane] : low[axis];
-      high[axis] = highs[axis][lane] > high[axis] ? highs[axis][lane] : high[axis];
-    }
+    for (int lane = 0; lane < CONIC_LANES; lane++)
+      CONIC_WIDEN(low[axis], high[axis], lows[axis][lane], highs[axis][lane]);
   return end;
 }
 
@@ -49,10 +48,8 @@ size_t conic_points_bounds(float *const position[3], size_t stride, const double
       p[axis] = conic_column_at(position[axis], stride, indices ? indices[k] : k);
     if (!(p[0] * 0.0f == 0.0f && p[1] * 0.0f == 0.0f && p[2] * 0.0f == 0.0f))
       continue;
-    for (int axis = 0; axis < 3; axis++) {
-      low[axis] = p[axis] < low[axis] ? p[axis] : low[axis];
-      high[axis] = p[axis] > high[axis] ? p[axis] : high[axis];
-    }
+    for (int axis = 0; axis < 3; axis++)
+      CONIC_WIDEN(low[axis], high[axis], p[axis], p[axis]);
     n_finite++;
   }
   for (int axis = 0; axis < 3; axis++) {

@@ -181,8 +181,7 @@ conic_status conic_cluster_note_support(conic_sampler *s, uint32_t i_site, const
   support->at[1] = conic_dot(d, site->v);
   support->slope[0] = conic_dot(facing, site->u) / support->cosine;
   support->slope[1] = conic_dot(facing, site->v) / support->cosine;
-  site->lowest = support->above < site->lowest ? support->above : site->lowest;
-  site->highest = support->above > site->highest ? support->above : site->highest;
+  CONIC_WIDEN(site->lowest, site->highest, support->above, support->above);
   return CONIC_OK;
 }
 

@@ -97,10 +97,8 @@ static conic_status order_faces(conic_context *context, conic_face_tree *tree) {
 /* --- boxes --- */
 
 static void add_to_box(conic_face_box *box, const conic_face_box *more) {
-  for (int axis = 0; axis < 3; axis++) {
-    box->low[axis] = more->low[axis] < box->low[axis] ? more->low[axis] : box->low[axis];
-    box->high[axis] = more->high[axis] > box->high[axis] ? more->high[axis] : box->high[axis];
-  }
+  for (int axis = 0; axis < 3; axis++)
+    CONIC_WIDEN(box->low[axis], box->high[axis], more->low[axis], more->high[axis]);
 }
 
 static void fill_boxes(conic_face_tree *tree) {

@@ -2,6 +2,7 @@
 
 #include "core/base/radix.h"
 #include "core/base/real.h"
+#include "core/base/vectors.h"
 #include "core/files/disk.h"
 #include "core/files/pile.h"
 #include "core/formats/model_read.h"
@@ -178,10 +179,8 @@ static int find_cell_plane(float (*at)[3], size_t n, float *sorted, conic_cell_n
   float widest = 0.0f;
   for (int axis = 0; axis < 3; axis++) {
     float low = at[0][axis], high = at[0][axis];
-    for (size_t i = 1; i < n; i++) {
-      low = at[i][axis] < low ? at[i][axis] : low;
-      high = at[i][axis] > high ? at[i][axis] : high;
-    }
+    for (size_t i = 1; i < n; i++)
+      CONIC_WIDEN(low, high, at[i][axis], at[i][axis]);
     if (high - low > widest) {
       widest = high - low;
       plane->axis = axis;

@@ -5,6 +5,7 @@
 
 #include "core/base/base.h"
 #include "core/base/byte_order.h"
+#include "core/base/vectors.h"
 #include "core/splats/ellipse.h"
 
 /* Where in a leaf's bytes: */
@@ -37,10 +38,8 @@ static leaf_box find_leaf_box(const conic_splats *leaves, size_t begin, size_t e
   for (int axis = 0; axis < 3; axis++) {
     const float *x = leaves->position[axis];
     float low = x[begin], high = x[begin];
-    for (size_t i = begin; i < end; i++) {
-      low = x[i] < low ? x[i] : low;
-      high = x[i] > high ? x[i] : high;
-    }
+    for (size_t i = begin; i < end; i++)
+      CONIC_WIDEN(low, high, x[i], x[i]);
     box.low[axis] = low;
     box.step[axis] = (float)(((double)high - (double)low) / POSITION_STEPS * (1.0 + 1e-6));
   }

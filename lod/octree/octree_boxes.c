@@ -1,5 +1,6 @@
 /* How an octree parts its points, as a picture (after Confetti's Fig. 17). */
 
+#include "core/base/vectors.h"
 #include "core/coloring/color_ramp.h"
 #include "core/image/box_lines.h"
 #include "core/image/image_common.h"
@@ -78,10 +79,8 @@ static void find_box(const conic_octree *octree, size_t i_node, double box[2][3]
   for (int axis = 0; axis < 3; axis++) {
     const float *position = octree->leaves.position[axis];
     float low = position[octree->first_leaf[i_node]], high = low;
-    for (size_t k = octree->first_leaf[i_node]; k < octree->first_leaf[octree->end[i_node]]; k++) {
-      low = position[k] < low ? position[k] : low;
-      high = position[k] > high ? position[k] : high;
-    }
+    for (size_t k = octree->first_leaf[i_node]; k < octree->first_leaf[octree->end[i_node]]; k++)
+      CONIC_WIDEN(low, high, position[k], position[k]);
     box[0][axis] = (double)low + octree->leaves.origin[axis];
     box[1][axis] = (double)high + octree->leaves.origin[axis];
   }

@@ -1,3 +1,4 @@
+#include "core/base/vectors.h"
 #include "core/splats/columns.h"
 #include "lod/octree/octree_fit.h"
 #include "raster/project/projected.h"
@@ -175,10 +176,8 @@ static void range_chunk(void *data, size_t i_chunk) {
   for (int axis = 0; axis < 3; axis++) {
     const float *positions = leaves->position[axis], *colors = leaves->color[axis];
     float low = positions[begin], high = low;
-    for (size_t i = begin; i < end; i++) {
-      low = positions[i] < low ? positions[i] : low;
-      high = positions[i] > high ? positions[i] : high;
-    }
+    for (size_t i = begin; i < end; i++)
+      CONIC_WIDEN(low, high, positions[i], positions[i]);
     for (size_t i = begin; i < end && colors; i++)
       range.color = colors[i] > range.color ? colors[i] : range.color;
     range.low[axis] = low;
@@ -196,10 +195,8 @@ static void range_chunk(void *data, size_t i_chunk) {
 }
 
 static void join_ranges(const leaf_range *more, leaf_range *range) {
-  for (int axis = 0; axis < 3; axis++) {
-    range->low[axis] = more->low[axis] < range->low[axis] ? more->low[axis] : range->low[axis];
-    range->high[axis] = more->high[axis] > range->high[axis] ? more->high[axis] : range->high[axis];
-  }
+  for (int axis = 0; axis < 3; axis++)
+    CONIC_WIDEN(range->low[axis], range->high[axis], more->low[axis], more->high[axis]);
   range->color = more->color > range->color ? more->color : range->color;
   range->longest2 = more->longest2 > range->longest2 ? more->longest2 : range->longest2;
 }

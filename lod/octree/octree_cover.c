@@ -1,6 +1,7 @@
 #include "lod/octree/octree_cover.h"
 
 #include "core/base/trigonometry.h"
+#include "core/base/vectors.h"
 
 void conic_disc_samples_init(conic_disc_samples *samples) {
   /* Rings that are turned against each other, found by search; a test holds the gap. The outermost, where most is to be
@@ -45,8 +46,7 @@ void conic_discs_close(conic_discs *discs) {
       float low = HUGE_VALF, high = -HUGE_VALF;
       for (size_t k = block * CONIC_DISC_BLOCK; k < (block + 1) * CONIC_DISC_BLOCK && k < discs->count; k++) {
         float from = discs->center[axis][k] - discs->half[axis][k], to = discs->center[axis][k] + discs->half[axis][k];
-        low = from < low ? from : low;
-        high = to > high ? to : high;
+        CONIC_WIDEN(low, high, from, to);
       }
       discs->block_center[axis][block] = 0.5f * low + 0.5f * high;
       discs->block_half[axis][block] = 0.5f * high - 0.5f * low;

@@ -68,8 +68,7 @@ static int is_in_box(const error_box *b, const conic_discs *discs, size_t k) {
 
 static void add_to_box(float center, float half, int axis, error_box *b) {
   float low = center - half, high = center + half;
-  b->low[axis] = low < b->low[axis] ? low : b->low[axis];
-  b->high[axis] = high > b->high[axis] ? high : b->high[axis];
+  CONIC_WIDEN(b->low[axis], b->high[axis], low, high);
 }
 
 /* Around the subtree's own discs and those of its nodes. */

@@ -2,6 +2,7 @@
 #include "lod/hybrid/build/hybrid_build.h"
 
 #include "core/base/color.h"
+#include "core/base/vectors.h"
 #include "core/image/texture_levels.h"
 #include "lod/hybrid/model/hybrid_chunks.h"
 #include "lod/hybrid/model/hybrid_layout.h"
@@ -68,8 +69,7 @@ static void count_levels(packing *p) {
 static void add_vertex_to_box(conic_hybrid *h, float *const position[3], size_t i) {
   for (int axis = 0; axis < 3; axis++) {
     float at = position[axis][i];
-    h->low[axis] = at < h->low[axis] ? at : h->low[axis];
-    h->high[axis] = at > h->high[axis] ? at : h->high[axis];
+    CONIC_WIDEN(h->low[axis], h->high[axis], at, at);
   }
 }
 

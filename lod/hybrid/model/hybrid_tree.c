@@ -1,5 +1,6 @@
 /* The hierarchy over the clusters. */
 #include "core/base/real.h"
+#include "core/base/vectors.h"
 #include "lod/hybrid/model/hybrid_model.h"
 
 /* Halves like these need no more levels of nodes than they must. */
@@ -27,8 +28,7 @@ static int longest_axis(const conic_hybrid_bound *bounds, const uint32_t *order,
     float low = bounds[order[0]].center[axis], high = low;
     for (size_t i = 1; i < n; i++) {
       float at = bounds[order[i]].center[axis];
-      low = at < low ? at : low;
-      high = at > high ? at : high;
+      CONIC_WIDEN(low, high, at, at);
     }
     if (high - low > widest) {
       widest = high - low;
