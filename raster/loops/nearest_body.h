@@ -139,9 +139,7 @@ CONIC_INLINE uint64_t nearest_of(conic_band *band, const sources *from, const st
       band->has_special = 1;
     }
   }
-  for (int lane = 0; lane < CONIC_LANES; lane++)
-    sum += n_covered[lane];
-  return sum;
+  return sum + sum_of_counts(n_covered);
 }
 
 CONIC_INLINE void nearest_in_strips(conic_band *band, uint32_t strip_rows) {

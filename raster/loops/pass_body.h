@@ -37,9 +37,9 @@ typedef struct sources {
 
 CONIC_INLINE sources sources_of(const conic_band *band) {
   const conic_projected *projected = band->projected;
-  return (sources){band->view,          band->view->support, projected->footprints,
-                   projected->surfaces, projected->rays,     projected->clips,
-                   band->indices,       band->words,         band->n,          band->n_listed};
+  return (sources){band->view,      band->view->support, projected->footprints, projected->surfaces,
+                   projected->rays, projected->clips,    band->indices,         band->words,
+                   band->n,         band->n_listed};
 }
 
 CONIC_INLINE void evaluate(const sources *from, const conic_footprint *footprint, const splat_rows *rows, lanes x,
@@ -86,6 +86,7 @@ typedef struct pass {
   conic_kept *kept;
   size_t room, n_kept[CONIC_BAND_BLOCKS + 1], not_kept[CONIC_BAND_BLOCKS + 1];
   uint64_t n_fragments;
+  index_lanes n_covered;
   const conic_tile_rays *rays;
   const float *ray_y;
   lanes ray_length[(CONIC_BAND_BLOCKS + 1) * CONIC_PARTS]; /* of the blocks that has_lengths names by bits */
@@ -96,6 +97,7 @@ CONIC_INLINE void begin_pass(const conic_band *band, pass *p) {
   p->kept = band->kept;
   p->room = band->keeps_indices ? 0 : CONIC_KEPT_SPLATS;
   p->n_fragments = 0;
+  p->n_covered = lanes_of_index(0);
   p->rays = band->rays;
   p->ray_y = conic_band_ray_y(band);
   p->has_lengths = 0;
@@ -118,6 +120,21 @@ CONIC_INLINE void find_lengths(pass *p, uint32_t block) {
   p->has_lengths |= 1u << block;
 }
 
+/* Lanes count fragments in a register, in place of one population count a block. */
+CONIC_INLINE uint64_t sum_of_counts(index_lanes count) {
+  uint64_t sum = 0;
+  uint32_t stored[CONIC_LANES]; /* picking lanes would keep `count` in memory */
+  lanes_store_indices(stored, count);
+  for (int lane = 0; lane < CONIC_LANES; lane++)
+    sum += stored[lane];
+  return sum;
+}
+
+static __attribute__((noinline)) void take_counts(pass *p, index_lanes count) {
+  p->n_fragments += sum_of_counts(count) + sum_of_counts(p->n_covered);
+  p->n_covered = lanes_of_index(0);
+}
+
 /* One splat, and what of it is the same in all blocks. */
 typedef struct passing {
   const conic_footprint *footprint;
@@ -136,48 +153,49 @@ CONIC_INLINE lanes hiding_iz(pass *p, const passing *splat, lanes iz, uint32_t p
   return splat->nearness * iz;
 }
 
-/* Raises a part's thresholds and writes its fragments to the place; returns how many there are. */
-CONIC_INLINE unsigned pass_part(lanes hides, const fragments *f, conic_kept *kept, size_t place, size_t at,
-                                splat_kind kind) {
+/* Raises a part's thresholds and writes its fragments to the place. */
+CONIC_INLINE void pass_part(lanes hides, const fragments *f, conic_kept *kept, size_t place, size_t at,
+                            splat_kind kind) {
   lanes_store(kept->threshold + at, lanes_max(lanes_keep(f->covered, hides), lanes_load(kept->threshold + at)));
   lanes_store(kept->fragments[place].q + at, kind == SPLAT_PROFILED ? f->scale : f->q);
   lanes_store(kept->fragments[place].seen_iz + at,
               lanes_select(f->covered, lanes_max(f->plane_iz, f->iz), lanes_of(-1.0f)));
   if (kind >= SPLAT_SPECIAL)
     lanes_store(kept->scale[place] + at, f->scale);
-  return lanes_count(f->covered);
 }
 
 CONIC_INLINE void pass_block(pass *p, const sources *from, const sites *s, const passing *splat, uint32_t block,
-                             splat_kind kind) {
+                             splat_kind kind, index_lanes *count) {
   conic_kept *kept = &p->kept[block];
   size_t place = p->n_kept[block];
-  unsigned n_covered = 0;
+  lanes_mask covered = {0};
   fragments f;
   kept->footprint[place] = splat->i_footprint;
   for (uint32_t part = 0; part < CONIC_PARTS; part++) {
     evaluate(from, splat->footprint, &splat->rows, s->x[block * CONIC_PARTS + part], kind, &f);
     lanes hides = hiding_iz(p, splat, lanes_min(f.plane_iz, f.iz), block * CONIC_PARTS + part, kind);
-    n_covered += pass_part(hides, &f, kept, place, (size_t)part * CONIC_LANES, kind);
+    pass_part(hides, &f, kept, place, (size_t)part * CONIC_LANES, kind);
+    *count = lanes_increment(f.covered, *count);
+    covered |= f.covered;
   }
-  p->n_fragments += n_covered;
   if (place < p->room)
-    p->n_kept[block] = place + (n_covered > 0);
-  else if (n_covered > 0 && p->not_kept[block] > splat->i)
+    p->n_kept[block] = place + (size_t)(lanes_any(covered) != 0);
+  else if (lanes_any(covered) && p->not_kept[block] > splat->i)
     p->not_kept[block] = splat->i;
 }
 
-/* One splat in the blocks that its word names. Two are done in any case, the second perhaps one where it covers nothing:
- * most small splats have one or two, and which, no branch can foresee. */
-CONIC_INLINE void pass_splat(pass *p, const sources *from, const sites *s, size_t i, splat_kind kind) {
+/* One splat in the blocks that its word names. Two are done in any case, the second perhaps one where it covers
+ * nothing: most small splats have one or two, and which, no branch can foresee. */
+CONIC_INLINE void pass_splat(pass *p, const sources *from, const sites *s, size_t i, splat_kind kind,
+                             index_lanes *count) {
   const uint32_t i_footprint = from->indices[i], word = from->words[i];
   const uint32_t first = conic_word_first(word), last = conic_word_last(word);
   const conic_footprint *footprint = &from->footprints[i_footprint];
   passing splat = {footprint, i, i_footprint, lanes_of(footprint->nearness), begin_splat(from, footprint, s->y, kind)};
-  pass_block(p, from, s, &splat, first, kind);
-  pass_block(p, from, s, &splat, kind < SPLAT_SPECIAL || last > first ? first + 1 : CONIC_NO_BLOCK, kind);
+  pass_block(p, from, s, &splat, first, kind, count);
+  pass_block(p, from, s, &splat, kind < SPLAT_SPECIAL || last > first ? first + 1 : CONIC_NO_BLOCK, kind, count);
   for (uint32_t block = first + 2; block <= last; block++)
-    pass_block(p, from, s, &splat, block, kind);
+    pass_block(p, from, s, &splat, block, kind, count);
 }
 
 /* A ray's pixels in a block, by their inverse depth alone. Returns 0, and does nothing, where they must be evaluated:
@@ -264,7 +282,7 @@ static __attribute__((noinline)) void pass_ray_in_crowd(pass *p, const sources *
   const passing splat = {f, i, i_footprint, lanes_of(f->nearness), begin_rows(f, s->y)};
   for (uint32_t block = conic_word_first(word); block <= conic_word_last(word); block++)
     if (!(sure < HUGE_VALF) || !glance_at_block(p, from, s, &splat, sure, block))
-      pass_block(p, from, s, &splat, block, SPLAT_SPECIAL);
+      pass_block(p, from, s, &splat, block, SPLAT_SPECIAL, &p->n_covered);
 }
 
 CONIC_INLINE void end_pass(const pass *p, int has_special, conic_band *band) {
@@ -276,11 +294,11 @@ CONIC_INLINE void end_pass(const pass *p, int has_special, conic_band *band) {
 
 /* Rays and what has clip lines, of kernels that have a profile. Ellipses get theirs once it is known what is seen. */
 static __attribute__((noinline)) void pass_profiled(pass *p, const sources *from, const sites *s, size_t i) {
-  pass_splat(p, from, s, i, SPLAT_PROFILED);
+  pass_splat(p, from, s, i, SPLAT_PROFILED, &p->n_covered);
 }
 
 static void visibility(conic_band *band) {
-  enum { LOOK_EVERY = 32 };
+  enum { LOOK_EVERY = 32, COUNTABLE = 1 << 20 }; /* so few splats that no lane's count overflows */
   const sources from = sources_of(band);
   const int is_profiled = band->view->profile.table != NULL, is_crowd = from.n > CONIC_KEPT_SPLATS && !is_profiled;
   crowd c = {0, 0.0f, 0, 0.0f};
@@ -289,30 +307,35 @@ static void visibility(conic_band *band) {
   sites s;
   find_sites(band, &s);
   begin_pass(band, &p);
-  for (size_t i = 0; i < from.n; i++) {
-    prefetch_splat(&from, i);
-    const conic_footprint *footprint = &from.footprints[from.indices[i]];
-    const int is_ellipse = footprint->s3 > 0.0f; /* without clip lines */
-    if (is_crowd && has_special && i % LOOK_EVERY == 0)
-      look_at_crowd(band, p.not_kept, &c);
-    /* Neither is 0 or below: in one comparison. */
-    const float lesser = footprint->s3 < footprint->nearness ? footprint->s3 : footprint->nearness;
-    if (__builtin_expect(lesser > 0.0f, 1)) {
-      pass_splat(&p, &from, &s, i, SPLAT_USUAL);
-      continue;
+  for (size_t begin = 0; begin < from.n; begin += COUNTABLE) {
+    const size_t end = from.n - begin < COUNTABLE ? from.n : begin + COUNTABLE;
+    index_lanes count = lanes_of_index(0);
+    for (size_t i = begin; i < end; i++) {
+      prefetch_splat(&from, i);
+      const conic_footprint *footprint = &from.footprints[from.indices[i]];
+      const int is_ellipse = footprint->s3 > 0.0f; /* without clip lines */
+      if (is_crowd && has_special && i % LOOK_EVERY == 0)
+        look_at_crowd(band, p.not_kept, &c);
+      /* Neither is 0 or below: in one comparison. */
+      const float lesser = footprint->s3 < footprint->nearness ? footprint->s3 : footprint->nearness;
+      if (__builtin_expect(lesser > 0.0f, 1)) {
+        pass_splat(&p, &from, &s, i, SPLAT_USUAL, &count);
+        continue;
+      }
+      if (is_ellipse)
+        pass_splat(&p, &from, &s, i, SPLAT_WIDE, &count);
+      else {
+        prefetch_ray(&from, from.indices[i + 12 < from.n ? i + 12 : i]);
+        if (is_profiled)
+          pass_profiled(&p, &from, &s, i);
+        else if (is_crowd && is_plain_ray(footprint))
+          pass_ray_in_crowd(&p, &from, &s, band, &c, i);
+        else
+          pass_splat(&p, &from, &s, i, SPLAT_SPECIAL, &count);
+        has_special = 1;
+      }
     }
-    if (is_ellipse)
-      pass_splat(&p, &from, &s, i, SPLAT_WIDE);
-    else {
-      prefetch_ray(&from, from.indices[i + 12 < from.n ? i + 12 : i]);
-      if (is_profiled)
-        pass_profiled(&p, &from, &s, i);
-      else if (is_crowd && is_plain_ray(footprint))
-        pass_ray_in_crowd(&p, &from, &s, band, &c, i);
-      else
-        pass_splat(&p, &from, &s, i, SPLAT_SPECIAL);
-      has_special = 1;
-    }
+    take_counts(&p, count);
   }
   end_pass(&p, has_special, band);
   if (is_profiled)
@@ -351,23 +374,31 @@ CONIC_INLINE void blend(const conic_projected_surface *surface, uint32_t i_footp
   to->heaviest = lanes_select_indices(heavier, lanes_of_index(i_footprint), to->heaviest);
 }
 
+/* Weights first, of some splats, and then their sums: where sums wait for weights, they fill the machine's window, and
+ * it does not see the next weights. */
 CONIC_INLINE void blend_kept(const sources *from, const conic_kept *kept, size_t n_kept, size_t at, int has_special,
                              kernel_kind kind, part_sums *to) {
-  enum { AHEAD = 8 };
-  lanes threshold = lanes_load(kept->threshold + at);
-  for (size_t i = 0; i < n_kept; i++) {
-    uint32_t i_footprint = kept->footprint[i];
-    __builtin_prefetch(&from->surfaces[kept->footprint[i + AHEAD < n_kept ? i + AHEAD : i]]);
-    lanes_mask visible = lanes_at_least(lanes_load(kept->fragments[i].seen_iz + at), threshold);
-    if (!lanes_any(visible))
-      continue;
-    lanes scale = lanes_of(1.0f), q = lanes_load(kept->fragments[i].q + at);
-    if (kind == KERNEL_PROFILE)
-      scale = q;
-    else if (__builtin_expect(has_special, 0) && !(from->footprints[i_footprint].s3 > 0.0f))
-      scale = lanes_load(kept->scale[i] + at);
-    const conic_projected_surface *surface = &from->surfaces[i_footprint];
-    blend(surface, i_footprint, weigh(from->view, surface->amplitude, q, scale, visible, kind), to);
+  enum { AHEAD = 8, GROUP = 64 };
+  lanes threshold = lanes_load(kept->threshold + at), weights[GROUP];
+  uint32_t whose[GROUP];
+  for (size_t first = 0; first < n_kept; first += GROUP) {
+    size_t end = first + GROUP < n_kept ? first + GROUP : n_kept, n = 0;
+    for (size_t i = first; i < end; i++) {
+      uint32_t i_footprint = kept->footprint[i];
+      __builtin_prefetch(&from->surfaces[kept->footprint[i + AHEAD < n_kept ? i + AHEAD : i]]);
+      lanes_mask visible = lanes_at_least(lanes_load(kept->fragments[i].seen_iz + at), threshold);
+      if (!lanes_any(visible))
+        continue;
+      lanes scale = lanes_of(1.0f), q = lanes_load(kept->fragments[i].q + at);
+      if (kind == KERNEL_PROFILE)
+        scale = q;
+      else if (__builtin_expect(has_special, 0) && !(from->footprints[i_footprint].s3 > 0.0f))
+        scale = lanes_load(kept->scale[i] + at);
+      weights[n] = weigh(from->view, from->surfaces[i_footprint].amplitude, q, scale, visible, kind);
+      whose[n++] = i_footprint;
+    }
+    for (size_t i = 0; i < n; i++)
+      blend(&from->surfaces[whose[i]], whose[i], weights[i], to);
   }
 }
 
