@@ -120,7 +120,7 @@ typedef struct conic_band {
   const conic_view *view;
   const conic_projected *projected;
   const uint32_t *indices, *words; /* footprints whose boxes meet the band, in file order */
-  size_t n, n_listed; /* those of the next band follow, up to n_listed */
+  size_t n, n_listed;              /* those of the next band follow, up to n_listed */
   int x, y, n_blocks;              /* its first pixel in the picture */
   int first_column, first_row;     /* of the picture, where the image begins */
   const conic_tile_rays *rays;     /* its tile's */
