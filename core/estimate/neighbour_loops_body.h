@@ -3,6 +3,8 @@
 #include "core/estimate/neighbour_loops.h"
 #include "core/lanes/lanes_double.h"
 
+#if CONIC_WIDE_LANES > 2 /* two by two, it takes twice as long as plain C */
+
 CONIC_INLINE wide_ints count_up(void) {
   wide_ints ascending = {0};
   for (int lane = 0; lane < CONIC_WIDE_LANES; lane++)
@@ -49,6 +51,8 @@ static size_t find(const conic_near_leaves *leaves, const double query[3], doubl
   return n;
 }
 
+#endif
+
 /* Compares each with each: for so few, that is quicker than sorting with its unpredictable comparisons. */
 static void rank(const float *keys, size_t n, uint32_t *places) {
   enum { PARTS = 4 };
@@ -70,5 +74,8 @@ static void rank(const float *keys, size_t n, uint32_t *places) {
 }
 
 CONIC_FILL_LOOPS(conic_neighbour_loops) {
-  *loops = (conic_neighbour_loops){find, rank};
+#if CONIC_WIDE_LANES > 2
+  loops->find = find;
+#endif
+  loops->rank = rank;
 }

@@ -80,6 +80,8 @@ CONIC_INLINE void add_up(partial_sums *partials, int n, double *sums) {
     sums[k] = total(partials[k]);
 }
 
+#if CONIC_WIDE_LANES > 2 /* two by two, it takes three times as long as plain C */
+
 static void select(const conic_near *all, const double r[3], double neglect, double margin, uint32_t except,
                    conic_near *near) {
   size_t n = 0;
@@ -100,6 +102,8 @@ static void select(const conic_near *all, const double r[3], double neglect, dou
   }
   near->n = n;
 }
+
+#endif
 
 CONIC_INLINE void moments_part(conic_near *near, const conic_weighing *weighing, const double q[3],
                                partial_sums *partials, size_t lane, conic_surface_weight weight) {
@@ -280,5 +284,11 @@ static void sphere(conic_near *near, const conic_weighing *weighing, const doubl
 }
 
 CONIC_FILL_LOOPS(conic_surface_loops) {
-  *loops = (conic_surface_loops){select, moments, plane, factor, sphere};
+#if CONIC_WIDE_LANES > 2
+  loops->select = select;
+#endif
+  loops->moments = moments;
+  loops->plane = plane;
+  loops->factor = factor;
+  loops->sphere = sphere;
 }
