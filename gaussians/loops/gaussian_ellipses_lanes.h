@@ -5,7 +5,7 @@
 #include "gaussians/draw/gaussian_outline.h"
 
 #define NUMBER wide
-#include "gaussians/scene/harmonics_text.h"
+#include "gaussians/scene/harmonics_body.h"
 
 CONIC_INLINE wide_mask wide_is_number(wide v) {
   return v - v == 0.0;

@@ -4,7 +4,7 @@
 #include "core/base/trigonometry.h"
 
 #define NUMBER double
-#include "gaussians/scene/harmonics_text.h"
+#include "gaussians/scene/harmonics_body.h"
 
 void conic_harmonics_evaluate(const double direction[3], int degree, double *y) {
   evaluate_harmonics(direction, degree, y);
