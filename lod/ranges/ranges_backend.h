@@ -1,6 +1,8 @@
 /* A backend of lod/ranges/ranges.h. Its struct begins with a conic_ranges. */
 #pragma once
 
+#include <stdatomic.h>
+
 #include "lod/ranges/ranges.h"
 
 /* --- ranges that wait --- */
@@ -37,8 +39,9 @@ typedef struct conic_ranges_backend {
 struct conic_ranges {
   conic_context *context;
   const conic_ranges_backend *backend;
-  uint64_t size, n_received;
-  size_t n_pending; /* asked for, not answered */
+  uint64_t size;
+  atomic_uint_fast64_t n_received; /* which a thread of the backend may add to */
+  size_t n_pending;                /* asked for, not answered */
   int is_going_on;
   conic_range_queue queue;
 };
