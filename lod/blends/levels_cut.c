@@ -6,7 +6,7 @@
 
 /* What reading and drawing take of a Gaussian that is drawn, beside its numbers: what is above it and beside it in its
  * clouds, and what a picture sets up. */
-enum { DRAWING_BYTES = 320, WORDS_BESIDE = 3 };
+enum { DRAWING_BYTES = 320, WORDS_BESIDE = 6 };
 
 /* Pixels that filters of a picture reach out of an outline. */
 static const double margin_px = 4.0;
@@ -327,16 +327,17 @@ static conic_status choose_some(level_cuttings *all, const conic_levels_wish *wi
   return status == CONIC_OK && (wish->budget || is_over) ? find_error(all, wish->budget ? 0.0 : wish->error) : status;
 }
 
-/* Drops the finest clouds, where memory is scarce. */
-static void drop_finest(const level_cuttings *all, uint64_t most) {
+/* Drops all clouds, where memory is scarce: what draws needs it. */
+static void drop_many(const level_cuttings *all, uint64_t most) {
   uint64_t n = 0;
-  for (size_t k = 0; k < all->n; k++)
-    for (uint32_t i = 0; i < all->list[k].levels->shape.n_clouds; i++)
-      n += all->list[k].levels->clouds[i].columns ? all->list[k].levels->entries[i].n : 0;
-  for (size_t k = 0; k < all->n; k++)
-    for (uint32_t i = all->list[k].levels->shape.n_clouds; i-- > 0 && n > most / 2;) {
-      n -= all->list[k].levels->clouds[i].columns ? all->list[k].levels->entries[i].n : 0;
-      conic_levels_drop(all->list[k].levels, i);
+  for (int is_dropping = 0; is_dropping < 2; is_dropping++)
+    for (size_t k = 0; k < all->n && (!is_dropping || n > most / 2); k++) {
+      conic_levels *l = all->list[k].levels;
+      for (uint32_t i = 0; i < l->shape.n_clouds; i++)
+        if (is_dropping)
+          conic_levels_drop(l, i);
+        else
+          n += l->clouds[i].columns ? l->entries[i].n : 0;
     }
 }
 
@@ -384,7 +385,7 @@ conic_status conic_levels_choose(conic_levels_scene *scenes, size_t n, const con
   for (size_t i = 0; i < n && all.list; i++)
     conic_memory_release_these(context, all.list[i].clouds[0], all.list[i].clouds[1], all.list[i].list);
   if (status == CONIC_OK)
-    drop_finest(&all, memory);
+    drop_many(&all, memory);
   conic_memory_release(context, all.list);
   return status;
 }
