@@ -100,7 +100,8 @@ run 0 bench --machine --threads 1 --json -
 grep -q '"operations_per_s": [0-9]' out || fail "no rate of the machine"
 lines 0 out
 run 0 bench --scenes plane-100 --threads 1 "${small[@]}" --quiet
-[[ ! -s out ]] || fail "--quiet prints"
+has '^plane-100@64x48/' # the table is the result
+[[ ! -s err ]] || fail "--quiet says more than its result: $(< err)"
 if command -v python3 > /dev/null; then
   for file in old.json new.json floor.json; do
     python3 -m json.tool < $file > /dev/null || fail "$file is not JSON"
