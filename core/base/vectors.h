@@ -99,18 +99,22 @@ static inline int conic_normal_rows(const double place[3][4], double rows[3][3])
   return determinant < 0.0;
 }
 
-/* The rotation of a unit quaternion w, x, y, z. */
+/* The rotation of a unit quaternion, of numbers or of vectors of them. */
+#define CONIC_ROTATION_OF(rows, w, x, y, z)                                                                            \
+  do {                                                                                                                 \
+    (rows)[0][0] = 1.0 - 2.0 * ((y) * (y) + (z) * (z));                                                                \
+    (rows)[0][1] = 2.0 * ((x) * (y) - (w) * (z));                                                                      \
+    (rows)[0][2] = 2.0 * ((x) * (z) + (w) * (y));                                                                      \
+    (rows)[1][0] = 2.0 * ((x) * (y) + (w) * (z));                                                                      \
+    (rows)[1][1] = 1.0 - 2.0 * ((x) * (x) + (z) * (z));                                                                \
+    (rows)[1][2] = 2.0 * ((y) * (z) - (w) * (x));                                                                      \
+    (rows)[2][0] = 2.0 * ((x) * (z) - (w) * (y));                                                                      \
+    (rows)[2][1] = 2.0 * ((y) * (z) + (w) * (x));                                                                      \
+    (rows)[2][2] = 1.0 - 2.0 * ((x) * (x) + (y) * (y));                                                                \
+  } while (0)
+
 static inline void conic_rotation_of(const double quaternion[4], double rows[3][3]) {
-  double w = quaternion[0], x = quaternion[1], y = quaternion[2], z = quaternion[3];
-  rows[0][0] = 1.0 - 2.0 * (y * y + z * z);
-  rows[0][1] = 2.0 * (x * y - w * z);
-  rows[0][2] = 2.0 * (x * z + w * y);
-  rows[1][0] = 2.0 * (x * y + w * z);
-  rows[1][1] = 1.0 - 2.0 * (x * x + z * z);
-  rows[1][2] = 2.0 * (y * z - w * x);
-  rows[2][0] = 2.0 * (x * z - w * y);
-  rows[2][1] = 2.0 * (y * z + w * x);
-  rows[2][2] = 1.0 - 2.0 * (x * x + y * y);
+  CONIC_ROTATION_OF(rows, quaternion[0], quaternion[1], quaternion[2], quaternion[3]);
 }
 
 /* The quaternion w, x, y, z of a rotation's rows, from the largest of the four, so that nothing is divided by a small

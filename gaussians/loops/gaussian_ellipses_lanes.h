@@ -1,6 +1,7 @@
 /* The set-up of ellipses in lanes of doubles: the operations of gaussian_setup.c, in its order. */
 #pragma once
 
+#include "core/base/vectors.h"
 #include "core/lanes/lanes_double.h"
 #include "gaussians/draw/gaussian_outline.h"
 
@@ -45,15 +46,7 @@ CONIC_INLINE void place_wide_axes(const conic_gaussian_view *view, const wide q[
     one_over =
         wide_select((squares - 1.0 < CONIC_UNIT_SLACK) & (1.0 - squares < CONIC_UNIT_SLACK), wide_of(1.0), one_over);
   const wide w = q[0] * one_over, x = q[1] * one_over, y = q[2] * one_over, z = q[3] * one_over;
-  rows[0][0] = 1.0 - 2.0 * (y * y + z * z);
-  rows[0][1] = 2.0 * (x * y - w * z);
-  rows[0][2] = 2.0 * (x * z + w * y);
-  rows[1][0] = 2.0 * (x * y + w * z);
-  rows[1][1] = 1.0 - 2.0 * (x * x + z * z);
-  rows[1][2] = 2.0 * (y * z - w * x);
-  rows[2][0] = 2.0 * (x * z - w * y);
-  rows[2][1] = 2.0 * (y * z + w * x);
-  rows[2][2] = 1.0 - 2.0 * (x * x + y * y);
+  CONIC_ROTATION_OF(rows, w, x, y, z);
   for (int axis = 0; axis < 3; axis++)
     for (int row = 0; row < 3; row++) {
       const double *camera = view->camera->cam_from_world[row];
